@@ -1,0 +1,35 @@
+# make demo   makes .venv, installs, and runs the main job
+# make test   the same set-up, then every check and test
+
+PYTHON ?= python3
+BIN := .venv/bin
+
+.PHONY: demo test test-long lint figures golden clean
+
+demo: .venv/installed
+	$(BIN)/python examples/demo.py
+
+test: lint
+	$(BIN)/pytest -m "not long"
+
+test-long: .venv/installed
+	$(BIN)/pytest -m long
+
+lint: .venv/installed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+figures: .venv/installed
+	$(BIN)/python benchmarks/figures.py
+
+golden: .venv/installed
+	$(BIN)/pytest --update-golden tests
+
+.venv/installed: pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[test]'
+	touch $@
+
+clean:
+	rm -rf .venv demo

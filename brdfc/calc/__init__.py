@@ -1,0 +1,1 @@
+"""The calculator as a machine: its operators, programs, text, bytes and static verifier."""

@@ -1,0 +1,65 @@
+"""What several commands take: NAME=VALUE pairs, and the variables of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from brdfc.cmm.link import Link
+
+
+def pairs(values: Iterable[str], option: str) -> dict[str, str]:
+    """`NAME=VALUE` texts as a dictionary; wrong usage (exit 2) for any other text."""
+    given: dict[str, str] = {}
+    for value in values:
+        name, separator, text = value.partition("=")
+        name = name.strip()
+        if not separator or not name or not text.strip():
+            raise click.UsageError(f"{option} takes NAME=VALUE, not '{value}'")
+        if name in given:
+            raise click.UsageError(f"{option} gives '{name}' twice")
+        given[name] = text.strip()
+    return given
+
+
+def environment_option(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The --env option of commands that run profiles."""
+    return click.option(
+        "--env",
+        "environment",
+        multiple=True,
+        metavar="NAME=VALUE",
+        help="A variable of the run, angles with their unit: incident=40deg. Repeatable.",
+    )(function)
+
+
+def connected(mid: str, mvis: str, environment: Iterable[str]) -> Link:
+    """MID and MVIS linked, variables read in the units the profile declares."""
+    from brdfc.cmm.link import connect, transform_variables
+    from brdfc.icc.profile import Profile
+    from brdfc.lang.types import TYPES
+    from brdfc.lang.values import parse_value
+
+    first, second = Profile.load(mid), Profile.load(mvis)
+    given = pairs(environment, "--env")
+    types = {}
+    for signature, described in transform_variables(second) if given else ():
+        types[signature] = described.type if described else None
+        if described:
+            types[described.name] = described.type
+    values = {}
+    for name, text in given.items():
+        # A foreign profile does not say what its variables are; the unit the user writes does.
+        declared = types.get(name) or TYPES["angle" if text[-3:] in ("deg", "rad") else "number"]
+        values[name] = parse_value(text, declared, name)[0]
+    return connect(first, second, env=values)
+
+
+def warn_of_defaults(link: Link) -> None:
+    """Say which channels the MID does not have; the reference engine would not."""
+    if link.defaulted:
+        listed = ", ".join(link.defaulted)
+        click.echo(f"note: the MID has no channel {listed}; the MVIS's default is used", err=True)

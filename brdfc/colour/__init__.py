@@ -1,0 +1,1 @@
+"""Colour: white points, differences, pictures; thin over colour-science."""

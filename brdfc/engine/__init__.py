@@ -1,0 +1,1 @@
+"""Run calculator programs on arrays of pixels."""

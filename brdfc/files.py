@@ -1,0 +1,59 @@
+"""Output files appear whole or not at all: written beside their final name, then renamed."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from brdfc.source.errors import BrdfcError
+
+
+@contextmanager
+def whole_file(path: str | Path) -> Iterator[Path]:
+    """A temporary path beside `path`; renamed to it when the block ends, removed when it fails.
+
+    Raises BrdfcError when the folder cannot be written.
+    """
+    final = Path(path)
+    try:
+        handle, name = tempfile.mkstemp(dir=final.parent, prefix=f".{final.name}.", suffix=".part")
+    except OSError as error:
+        raise BrdfcError(f"cannot write here: {error.strerror}", where=str(path)) from error
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        # mkstemp makes files private; give the mode that an ordinary new file would have.
+        mask = os.umask(0)
+        os.umask(mask)
+        temporary.chmod(0o666 & ~mask)
+        temporary.replace(final)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise BrdfcError(f"cannot be written: {reason}", where=str(path)) from error
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_whole(path: str | Path, data: bytes) -> None:
+    """Write bytes to a path, whole or not at all."""
+    with whole_file(path) as temporary:
+        temporary.write_bytes(data)
+
+
+def read_file(path: str | Path, limit: int | None = None) -> bytes:
+    """The bytes of a file; BrdfcError with the reason where it cannot be read.
+
+    limit: refuse files larger than this many bytes (input from outside is not trusted).
+    """
+    try:
+        with Path(path).open("rb") as stream:
+            size = os.fstat(stream.fileno()).st_size
+            if limit is not None and size > limit:
+                raise BrdfcError(f"{size:,} bytes are more than {limit:,}", where=str(path))
+            return stream.read()
+    except OSError as error:
+        raise BrdfcError(f"cannot be read: {error.strerror}", where=str(path)) from error

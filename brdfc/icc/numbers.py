@@ -1,0 +1,103 @@
+"""Tag types that hold numbers: `XYZ `, the number arrays, and `sig `."""
+
+from __future__ import annotations
+
+import math
+import struct
+from dataclasses import dataclass
+from typing import ClassVar
+
+from brdfc.icc.layout import check_count, unpack
+from brdfc.icc.signatures import signature_bytes, signature_text
+from brdfc.source.errors import ProfileError
+
+NUMBER_FORMATS = {
+    "fl16": "e",
+    "fl32": "f",
+    "fl64": "d",
+    "ui08": "B",
+    "ui16": "H",
+    "ui32": "I",
+    "ui64": "Q",
+}
+
+
+@dataclass(frozen=True)
+class NumberArray:
+    """`fl32` and its kin: kind is the type signature, the values as they are in the file.
+
+    No value may be NaN or infinite.
+    """
+
+    kind: str
+    values: tuple[float, ...]
+
+    @property
+    def type_signature(self) -> str:
+        return self.kind
+
+    def encode(self) -> bytes:
+        try:
+            values = struct.pack(f">{len(self.values)}{NUMBER_FORMATS[self.kind]}", *self.values)
+        except (struct.error, OverflowError) as error:
+            raise ProfileError(f"'{self.kind}' cannot hold a value: {error}") from error
+        _refuse_not_finite(self.values, f"'{self.kind}' array")
+        return signature_bytes(self.kind) + bytes(4) + values
+
+    @staticmethod
+    def decode(data: bytes, where: str) -> NumberArray:
+        kind = signature_text(data[:4])
+        form = NUMBER_FORMATS[kind]
+        count, rest = divmod(len(data) - 8, struct.calcsize(f">{form}"))
+        if rest:
+            raise ProfileError(f"{len(data) - 8} bytes are no whole count of '{kind}'", where=where)
+        check_count(count, where)
+        values = unpack(f"{count}{form}", data, 8, where)
+        _refuse_not_finite(values, where)
+        return NumberArray(kind, values)
+
+
+def _refuse_not_finite(values: tuple[float, ...], where: str) -> None:
+    for index, value in enumerate(values):
+        if not math.isfinite(value):
+            raise ProfileError(f"value {index} is {value}, not a finite number", where=where)
+
+
+@dataclass(frozen=True)
+class XYZArray:
+    """`XYZ `: colours as s15Fixed16, that is from -32768 to just under 32768 in steps of 2^-16."""
+
+    type_signature: ClassVar[str] = "XYZ "
+    values: tuple[tuple[float, float, float], ...]
+
+    def encode(self) -> bytes:
+        numbers = [value for colour in self.values for value in colour]
+        try:
+            fixed = [round(number * 65536) for number in numbers]
+            return b"XYZ " + bytes(4) + struct.pack(f">{len(fixed)}i", *fixed)
+        except (struct.error, OverflowError, ValueError) as error:
+            raise ProfileError(f"'XYZ ' cannot hold {self.values}") from error
+
+    @staticmethod
+    def decode(data: bytes, where: str) -> XYZArray:
+        count, rest = divmod(len(data) - 8, 12)
+        if rest:
+            raise ProfileError(f"{len(data) - 8} bytes are no whole count of XYZ", where=where)
+        check_count(count, where)
+        fixed = [number / 65536 for number in unpack(f"{3 * count}i", data, 8, where)]
+        return XYZArray(tuple(zip(fixed[::3], fixed[1::3], fixed[2::3], strict=True)))
+
+
+@dataclass(frozen=True)
+class Signature:
+    """`sig `: one signature."""
+
+    type_signature: ClassVar[str] = "sig "
+    value: str
+
+    def encode(self) -> bytes:
+        return b"sig " + bytes(4) + signature_bytes(self.value)
+
+    @staticmethod
+    def decode(data: bytes, where: str) -> Signature:
+        return Signature(signature_text(unpack("4s", data, 8, where)[0]))

@@ -1,0 +1,134 @@
+"""TIFF files of coefficients and of XYZ, read and written in bands of rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from brdfc.files import whole_file
+from brdfc.source.errors import ImageError
+
+WRITING = (
+    "an array (rows, columns, samples) is written as one image with "
+    'tifffile.imwrite(path, array, photometric="minisblack", planarconfig="contig")'
+)
+
+Band = NDArray[np.float32]
+BAND_PIXELS = 1 << 18
+"""Pixels a band holds: a few megabytes, whatever the size of the image."""
+
+
+@dataclass(frozen=True)
+class CoefficientImage:
+    """An open image: samples are (height, width, channels), read from the file as they are used."""
+
+    height: int
+    width: int
+    channels: int
+    samples: Any
+
+    @property
+    def rows_per_band(self) -> int:
+        return max(1, BAND_PIXELS // max(1, self.width))
+
+    def bands(self) -> Iterator[Band]:
+        """The image from top to bottom, (rows, width, channels) float32 each."""
+        for top in range(0, self.height, self.rows_per_band):
+            yield np.ascontiguousarray(
+                self.samples[top : top + self.rows_per_band], dtype=np.float32
+            )
+
+
+@contextmanager
+def open_coefficients(path: str | Path) -> Iterator[CoefficientImage]:
+    """Open a float32 TIFF, chunky or planar; ImageError for anything else."""
+    import tifffile
+
+    try:
+        tiff = tifffile.TiffFile(path)
+    except OSError as error:
+        raise ImageError(f"cannot be read: {error.strerror or error}", where=str(path)) from error
+    except Exception as error:  # a hostile file can make the library raise anything
+        raise ImageError(f"not a TIFF image: {error}", where=str(path)) from error
+    with tiff:
+        yield _image(tiff, str(path))
+
+
+def _image(tiff: Any, where: str) -> CoefficientImage:
+    try:
+        pages = len(tiff.pages)
+        page = tiff.pages[0]
+        axes, kind = page.axes, page.dtype
+    except Exception as error:  # as above
+        raise ImageError(f"a damaged TIFF image: {error}", where=where) from error
+    if pages != 1:
+        raise ImageError(
+            f"the file holds {pages} images; one with all coefficients as samples is needed",
+            where=where,
+            hint=WRITING,
+        )
+    if kind != np.float32:
+        raise ImageError(
+            f"its samples are {kind}; coefficients are 32-bit floats",
+            where=where,
+            hint="convert it with the scaling that its samples have: brdfc does not guess one",
+        )
+    if axes not in ("YXS", "SYX", "YX"):
+        raise ImageError(f"rows, columns and samples are needed, not axes {axes}", where=where)
+    try:
+        samples = _mapped(tiff, page) if page.is_memmappable else page.asarray()
+    except Exception as error:  # truncated data, unknown compression
+        raise ImageError(f"its samples cannot be read: {error}", where=where) from error
+    if axes == "SYX":
+        samples = np.moveaxis(samples, 0, -1)
+    elif axes == "YX":
+        samples = samples[..., None]
+    height, width, channels = samples.shape
+    return CoefficientImage(height, width, channels, samples)
+
+
+def _mapped(tiff: Any, page: Any) -> Any:
+    """The samples of an uncompressed image where they lie in the file."""
+    return np.memmap(
+        tiff.filehandle.path,
+        dtype=tiff.byteorder + "f4",
+        mode="r",
+        offset=page.dataoffsets[0],
+        shape=page.shape,
+    )
+
+
+def write_xyz(
+    path: str | Path, height: int, width: int, bands: Iterable[Band], description: str
+) -> None:
+    """Write (height, width, 3) float32 as a TIFF, whole or not at all; bands from top to bottom."""
+    import tifffile
+
+    from brdfc import __version__
+
+    iterator = iter(bands)
+    first = next(iterator)
+
+    def strips() -> Iterator[Band]:
+        yield first
+        yield from iterator
+
+    with whole_file(path) as temporary, tifffile.TiffWriter(temporary) as tiff:
+        tiff.write(
+            strips(),
+            shape=(height, width, 3),
+            dtype=np.float32,
+            rowsperstrip=len(first),
+            photometric="minisblack",
+            planarconfig="contig",
+            extrasamples=("unspecified", "unspecified"),
+            description=description,
+            software=f"brdfc {__version__}",
+            metadata=None,
+        )

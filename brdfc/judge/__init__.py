@@ -1,0 +1,1 @@
+"""How good a program is: samples of its domain, the truth, and the error."""

@@ -1,0 +1,167 @@
+"""The way into the language: a path, a library model's name or a text to a checked Model."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from brdfc.files import read_file
+from brdfc.lang import tree
+from brdfc.lang.imports import SUFFIX, found_file, is_file, library_files
+from brdfc.lang.limits import MAX_IMPORTS, MAX_TEXT
+from brdfc.lang.model import Model, Module
+from brdfc.lang.report import Report
+from brdfc.lang.values import BadValue, parse_value
+from brdfc.source.diagnostics import Diagnostic, did_you_mean
+from brdfc.source.errors import BrdfcError, ModelError
+from brdfc.source.span import Source
+
+__all__ = ["LibraryEntry", "library", "load", "load_file", "load_text", "parse_value"]
+
+
+@dataclass(frozen=True)
+class LibraryEntry:
+    """A file of the library: kind is "model" or "module"."""
+
+    kind: str
+    title: str
+    path: Path
+
+
+def load(reference: str | Path) -> Model:
+    """The checked model of a `.brdf` file, or of the library by its name.
+
+    reference: a path (it exists, ends in .brdf or has a separator in it), else a library name.
+    Raises ModelError with all that is wrong in the text, or BrdfcError where there is none.
+    """
+    found = load_file(reference)
+    if isinstance(found, Module):
+        raise BrdfcError(
+            f"'{found.name}' is a module of functions, not a model",
+            where=found.origin,
+            hint=f"import it into a model: import {found.name} (...)",
+        )
+    return found
+
+
+def load_file(reference: str | Path) -> Model | Module:
+    """Like load, but also for modules."""
+    path = _path(reference)
+    return _Loader().whole(_source(path, str(path)), path, str(reference))
+
+
+def load_text(text: str, name: str = "<text>", folder: str | Path = ".") -> Model | Module:
+    """The checked model or module of a text; its imports start from the folder."""
+    return _Loader().whole(Source(name, text), Path(folder) / name, name)
+
+
+def library() -> dict[str, LibraryEntry]:
+    """The library's models and modules by name, from their headers alone."""
+    found = {}
+    for name, path in library_files().items():
+        text = _source(path, str(path)).text
+        header = re.search(r'^(model|module)\s+\w+\s+"([^"\n]*)"', text, re.MULTILINE)
+        if header:
+            found[name] = LibraryEntry(header[1], header[2], path)
+    return found
+
+
+def _path(reference: str | Path) -> Path:
+    """The file a user means."""
+    path = Path(reference)
+    named = isinstance(reference, str) and not (
+        reference.endswith(SUFFIX) or "/" in reference or "\\" in reference
+    )
+    if is_file(path) or not named:
+        return path
+    known = library_files()
+    if str(reference) in known:
+        return known[str(reference)]
+    listed = f"the library has: {', '.join(known)}" if known else None
+    raise BrdfcError(
+        f"there is no library model '{reference}'",
+        hint=did_you_mean(str(reference), known) or listed,
+    )
+
+
+def _source(path: Path, shown: str) -> Source:
+    """The text of a file; BrdfcError where it is none, or too long."""
+    data = read_file(path, limit=MAX_TEXT)
+    if data[36:40] == b"acsp":
+        raise BrdfcError("this is an ICC profile, not a model's text", where=shown)
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        raise BrdfcError("this is UTF-16 text", where=shown, hint="save it as UTF-8")
+    if b"\0" in data:
+        raise BrdfcError("this is a binary file, not a model's text", where=shown)
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        message = f"this is not UTF-8 text: byte 0x{data[error.start]:02X} in line {line}"
+        raise BrdfcError(message, where=shown, hint="save it as UTF-8") from None
+    return Source(shown, text.replace("\r\n", "\n").replace("\r", "\n"))
+
+
+class _Loader:
+    """One load: the file asked for and all that it imports, each read and checked once."""
+
+    def __init__(self) -> None:
+        self._diagnostics: list[Diagnostic] = []
+        self._checked: dict[Path, Model | Module | None] = {}
+        # The files being read, the outermost first: as they are found, and as they are shown.
+        self._open: dict[Path, str] = {}
+
+    def whole(self, source: Source, path: Path, origin: str) -> Model | Module:
+        """The checked file; raises ModelError with the findings of all files."""
+        found = self._file(source, path, origin)
+        if found is None or self._diagnostics:
+            raise ModelError(self._diagnostics)
+        return found
+
+    def _file(self, source: Source, path: Path, origin: str) -> Model | Module | None:
+        # Here and not above: Lark takes longer to import than all else in this folder together.
+        from brdfc.lang.check import check
+        from brdfc.lang.parse import parse
+
+        report = Report(source)
+        with self._opened(path, source.name):
+            imported = partial(self._imported, folder=path.parent, report=report)
+            found = check(parse(source), origin, report, imported)
+        self._diagnostics += report.diagnostics
+        return found
+
+    @contextmanager
+    def _opened(self, path: Path, shown: str) -> Iterator[None]:
+        self._open[path.resolve()] = shown
+        try:
+            yield
+        finally:
+            del self._open[path.resolve()]
+
+    def _imported(
+        self, statement: tree.Import, folder: Path, report: Report
+    ) -> Model | Module | None:
+        """The file an import names; None where it has errors, or where there is none."""
+        try:
+            path = found_file(statement.target, statement.is_path, folder)
+            resolved = path.resolve()
+            if resolved in self._open:
+                shown = list(self._open.values())[list(self._open).index(resolved) :]
+                chain = " -> ".join([*shown, shown[0]])
+                raise BadValue(f"these files import one another in a circle: {chain}")
+            if len(self._open) > MAX_IMPORTS:
+                raise BadValue(f"more than {MAX_IMPORTS} files import one another in a row")
+            if resolved not in self._checked:
+                source = _source(path, str(path))
+                self._checked[resolved] = self._file(source, path, str(path))
+        except BadValue as bad:
+            report.error(statement.span, bad.message, hint=bad.hint)
+            return None
+        except BrdfcError as error:
+            report.error(statement.span, f"'{statement.target}': {error.message}", hint=error.hint)
+            return None
+        return self._checked[resolved]

@@ -1,0 +1,1 @@
+"""A program and its channels as ICC.2 profiles."""

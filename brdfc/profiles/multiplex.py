@@ -1,0 +1,85 @@
+"""The encoding of the published workflow: a MID and an MVIS, joined in the multiplex space.
+
+The MID passes the samples of a coefficient image on under their names; the MVIS takes them by name
+and evaluates the model to XYZ in the D50 profile connection space.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from brdfc.calc.program import Op, Program
+from brdfc.icc.header import D50, Header
+from brdfc.icc.profile import Profile
+from brdfc.icc.signatures import multiplex_space, n_channel_space
+from brdfc.icc.types import (
+    Dictionary,
+    LocalizedText,
+    NumberArray,
+    Pipeline,
+    Tag,
+    Utf8Array,
+    XYZArray,
+)
+
+COPYRIGHT = "No copyright is claimed for this profile."
+
+
+@dataclass(frozen=True)
+class ProfilePair:
+    """A MID and the MVIS it feeds."""
+
+    mid: Profile
+    mvis: Profile
+
+    def save(self, mvis: str | Path, mid: str | Path | None = None) -> tuple[Path, Path]:
+        """Write both; the MID beside the MVIS unless said where. Returns (mid, mvis) paths."""
+        mvis_path = Path(mvis)
+        mid_path = Path(mid) if mid is not None else mid_beside(mvis_path)
+        self.mvis.to_bytes()  # what cannot be encoded fails before either is written
+        self.mid.save(mid_path)
+        self.mvis.save(mvis_path)
+        return mid_path, mvis_path
+
+
+def mid_beside(mvis: Path) -> Path:
+    """`ward_mvis.icc` -> `ward_mid.icc`; any other name gets `_mid` before its suffix."""
+    stem = mvis.stem
+    base = stem[: -len("mvis")] if stem.endswith("mvis") else f"{stem}_"
+    return mvis.with_name(f"{base}mid{mvis.suffix}")
+
+
+def profile_pair(
+    title: str,
+    program: Program,
+    names: Sequence[str],
+    defaults: Sequence[float],
+    meta: Dictionary,
+) -> ProfilePair:
+    """Profiles for a program whose inputs are channels of these names and defaults."""
+    count = len(names)
+    channels = Utf8Array(tuple(names))
+    passing = Program(count, count, (Op("in", 0, count), Op("out", 0, count)))
+    mid = Profile(
+        Header("mid ", colour_space=n_channel_space(count), mcs=multiplex_space(count)),
+        {
+            "desc": LocalizedText.english(f"{title} (coefficients)"),
+            "cprt": LocalizedText.english(COPYRIGHT),
+            "A2M0": Pipeline(count, count, (passing,)),
+            "mcta": channels,
+            "meta": meta,
+        },
+    )
+    tags: dict[str, Tag] = {
+        "desc": LocalizedText.english(f"{title} (appearance)"),
+        "cprt": LocalizedText.english(COPYRIGHT),
+        "M2B0": Pipeline(count, 3, (program,)),
+        "mcta": channels,
+        "mdv ": NumberArray("fl32", tuple(defaults)),
+        "wtpt": XYZArray((D50,)),
+        "meta": meta,
+    }
+    mvis = Profile(Header("mvis", pcs=b"XYZ ", mcs=multiplex_space(count)), tags)
+    return ProfilePair(mid, mvis)

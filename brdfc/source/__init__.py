@@ -1,0 +1,1 @@
+"""Text with places: spans, diagnostics, the errors a user can meet, and how they are drawn."""

@@ -1,0 +1,64 @@
+"""What is wrong, where, and what to do: one message drawn as good compilers draw it.
+
+ward.brdf:9:21: error: nothing here is called 'incidnt'
+    9 | let delta = (incidnt - reflection)/2
+      |              ^^^^^^^ expected a channel, env, constant, let or parameter
+      hint: did you mean 'incident'?
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from brdfc.source.span import Span
+
+
+@dataclass(frozen=True)
+class Diagnostic:
+    """One finding in a source text.
+
+    message says what is wrong, expected (optional) what would be right there, hint (optional)
+    what to do, and notes point to other places that matter ("first declared here").
+    """
+
+    span: Span
+    message: str
+    expected: str | None = None
+    hint: str | None = None
+    notes: tuple[tuple[Span, str], ...] = ()
+
+    def __str__(self) -> str:
+        parts = [f"{self.span}: error: {self.message}"]
+        parts += _drawn(self.span, f"expected {self.expected}" if self.expected else "")
+        for span, note in self.notes:
+            parts += [f"  {span}: {note}", *_drawn(span, "")]
+        if self.hint:
+            parts.append(f"          hint: {self.hint}")
+        return "\n".join(parts)
+
+
+def _drawn(span: Span, label: str) -> list[str]:
+    """The line with a caret under the span, at most to the end of the first line."""
+    line = span.line_text
+    before = line[: span.column - 1]
+    width = max(1, min(span.end - span.start, len(line) - len(before)))
+    # Tabs are kept in front of the carets, so that they stand under the text at any tab width.
+    indent = "".join("\t" if character == "\t" else " " for character in before)
+    carets = f"{indent}{'^' * width} {label}".rstrip()
+    return [f"{span.line:>5} | {line}", f"      | {carets}"]
+
+
+def nearest(name: str, known: Iterable[str]) -> str | None:
+    """The known name a mistyped one most resembles, or None; for hints."""
+    known = sorted(set(known))
+    exact = [k for k in known if k.lower() == name.lower()]
+    close = exact or difflib.get_close_matches(name, known, n=1, cutoff=0.6)
+    return close[0] if close else None
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str | None:
+    """A hint for a mistyped name, or None when nothing is near."""
+    found = nearest(name, known)
+    return f"did you mean '{found}'?" if found else None

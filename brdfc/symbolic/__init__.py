@@ -1,0 +1,1 @@
+"""A model's formulas as exact expressions: built, specialised, bounded, guarded."""

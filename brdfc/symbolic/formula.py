@@ -1,0 +1,58 @@
+"""A model made ready to compile: its formula, exactly, and the same prepared for a program."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from brdfc.lang.model import Model
+from brdfc.symbolic.build import build
+from brdfc.symbolic.constants import fold_constants
+from brdfc.symbolic.expression import Expression
+from brdfc.symbolic.guards import Guard, guarded
+from brdfc.symbolic.intervals import Interval
+from brdfc.symbolic.products import tidy_products
+from brdfc.symbolic.ranges import Ranges, domain
+from brdfc.symbolic.rewrite import rewrite
+from brdfc.symbolic.simplify import simplified
+
+
+@dataclass(frozen=True)
+class Formula:
+    """exact: the radiance as the model writes it, every function inlined, constants put in; the
+    truth a program is judged by. prepared: the same function, simplified by its ranges and guarded
+    where its domain reaches a break. domain: the ranges of the quantities left in it."""
+
+    exact: Expression
+    prepared: Expression
+    domain: Mapping[str, Interval]
+    guards: tuple[Guard, ...]
+
+    @property
+    def width(self) -> int:
+        """Components of the result: 3 for XYZ."""
+        return self.exact.width
+
+
+def formula(model: Model, values: Mapping[str, tuple[float, ...]]) -> Formula:
+    """A model's radiance with some quantities fixed.
+
+    values: one number a component (angles in radians) for what is fixed at compile time.
+    """
+    exact = build(model.radiance, values)
+    left = domain(tuple(q for q in model.quantities if q.name not in values))
+    ready, guards = prepared(exact, left)
+    return Formula(exact, ready, left, guards)
+
+
+def prepared(
+    exact: Expression, domain: Mapping[str, Interval]
+) -> tuple[Expression, tuple[Guard, ...]]:
+    """An expression simplified by its ranges and guarded, and the guards that were needed.
+
+    Inside its own domain the value is the same, up to the rounding of constants to 50 digits.
+    """
+    simple = rewrite(fold_constants(exact), Ranges(domain), simplified)
+    tidy = fold_constants(tidy_products(simple, Ranges(domain)))
+    safe, guards = guarded(rewrite(tidy, Ranges(domain), simplified), Ranges(domain))
+    return fold_constants(safe), guards

@@ -1,0 +1,166 @@
+"""Connections: by name, with defaults, and every refusal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import brdfc
+from brdfc.calc.program import Matrix, Op, Program
+from brdfc.calc.text import assemble
+from brdfc.icc.profile import Profile
+from brdfc.icc.types import Dictionary, NumberArray, Pipeline, Utf8Array
+from brdfc.profiles.multiplex import profile_pair
+from brdfc.source.errors import BrdfcError, LinkError, ProgramError, ValueGivenError
+
+PIXEL = [0.1, 0.2, 0.6, 0.05, 0.15]
+
+
+@pytest.fixture(scope="module")
+def ward() -> brdfc.Compiled:
+    return brdfc.compile(brdfc.load("ward"))
+
+
+def pair(text: str, names: list[str], defaults: list[float] | None = None):
+    """A MID and an MVIS around a calculator text."""
+    program = Program(len(names), 3, assemble(text))
+    return profile_pair("test", program, names, defaults or [0.0] * len(names), Dictionary(()))
+
+
+def with_tags(profile: Profile, **tags: object) -> Profile:
+    kept = {k: v for k, v in {**profile.tags, **tags}.items() if v is not None}
+    return replace(profile, tags=kept)
+
+
+def test_the_public_interface_in_one_breath(tmp_path: Path) -> None:
+    model = brdfc.load("ward")
+    compiled = brdfc.compile(model, set={"m": 0.15})
+    mid, mvis = compiled.save(tmp_path / "ward_mvis.icc")
+    from_files = brdfc.connect(mid, mvis, env={"incident": 0.7, "reflection": -0.2})
+    from_memory = brdfc.connect(compiled.mid, compiled.mvis, env={"inci": 0.7, "refl": -0.2})
+    pixels = np.random.default_rng(0).uniform(0, 1, (4, 6, 4)).astype(np.float32)
+    xyz = from_files.apply(pixels)
+    assert xyz.shape == (4, 6, 3)
+    assert xyz.dtype == np.float32
+    np.testing.assert_array_equal(xyz, from_memory.apply(pixels))
+    assert from_files.channels == ("Rdx", "Rdy", "Rdz", "ks")
+
+
+def test_channels_connect_by_name_in_any_order(ward: brdfc.Compiled) -> None:
+    order = [4, 0, 3, 2, 1]
+    names = [ward.roles.channel_names[i] for i in order]
+    mixed = profile_pair("m", ward.program, names, [0.0] * 5, Dictionary(())).mid
+    expected = brdfc.connect(ward.mid, ward.mvis).apply(PIXEL)
+    result = brdfc.connect(mixed, ward.mvis).apply([PIXEL[i] for i in order])
+    np.testing.assert_array_equal(result, expected)
+
+
+def test_a_channel_the_mid_lacks_takes_its_default(ward: brdfc.Compiled) -> None:
+    names = list(ward.roles.channel_names[:4])
+    mid = pair("{ in[0,3] out[0,3] }", names).mid
+    link = brdfc.connect(mid, ward.mvis)
+    assert link.defaulted == ("m",)
+    expected = brdfc.connect(ward.mid, ward.mvis).apply([*PIXEL[:4], 0.15])
+    np.testing.assert_array_equal(link.apply(PIXEL[:4]), expected)
+
+
+def test_names_agree_byte_for_byte(ward: brdfc.Compiled) -> None:
+    mid = pair("{ in[0,3] out[0,3] }", ["rdx", "RDY", "Rdz "]).mid
+    with pytest.raises(LinkError, match="no channel in common: rdx, RDY, Rdz  and Rdx, Rdy"):
+        brdfc.connect(mid, ward.mvis)
+
+
+def test_pipelines_of_several_elements_run_in_order(ward: brdfc.Compiled) -> None:
+    half = Matrix(5, 5, tuple(np.eye(5).ravel() * 0.5), (0.0, 0.0, 0.0, 0.0, 0.1))
+    passing = Program(5, 5, (Op("in", 0, 5), Op("out", 0, 5)))
+    mid = with_tags(ward.mid, A2M0=Pipeline(5, 5, (half, passing)))
+    scaled = [v / 2 for v in PIXEL[:4]] + [PIXEL[4] / 2 + 0.1]
+    expected = brdfc.connect(ward.mid, ward.mvis).apply(scaled)
+    np.testing.assert_allclose(brdfc.connect(mid, ward.mvis).apply(PIXEL), expected, rtol=1e-6)
+
+
+def test_variables_reach_both_profiles() -> None:
+    made = pair("{ in(0) env(gain) if { } else { pop 2 } mul copy(1,2) out[0,3] }", ["A"])
+    assert brdfc.connect(made.mid, made.mvis).apply([3.0]).tolist() == [6, 6, 6]
+    link = brdfc.connect(made.mid, made.mvis, env={"gain": 0.5})
+    assert link.apply([3.0]).tolist() == [1.5, 1.5, 1.5]
+    with pytest.raises(ValueGivenError, match="no variable 'loss'"):
+        brdfc.connect(made.mid, made.mvis, env={"loss": 1})
+
+
+def test_undefined_variables_take_the_models_default(ward: brdfc.Compiled) -> None:
+    given = {"incident": np.pi / 4, "reflection": 0.0}
+    np.testing.assert_array_equal(
+        brdfc.connect(ward.mid, ward.mvis).apply(PIXEL),
+        brdfc.connect(ward.mid, ward.mvis, env=given).apply(PIXEL),
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda c: (c.mvis, c.mid), "the first profile must be a MID"),
+        (lambda c: (c.mid, c.mid), "the second profile must be an MVIS"),
+        (lambda c: (with_tags(c.mid, A2M0=None), c.mvis), "no 'A2M0' transform"),
+        (lambda c: (with_tags(c.mid, mcta=None), c.mvis), "names no channels"),
+        (
+            lambda c: (with_tags(c.mid, mcta=Utf8Array(("Rdx",))), c.mvis),
+            "do not match the transforms' channels",
+        ),
+        (
+            lambda c: (c.mid, with_tags(c.mvis, **{"mdv ": NumberArray("fl32", (0.0,))})),
+            "1 defaults",
+        ),
+        (
+            lambda c: (c.mid, with_tags(c.mvis, M2B0=Pipeline(5, 3, ()))),
+            "do not fit its 3 outputs",
+        ),
+        (
+            lambda c: (
+                c.mid,
+                with_tags(c.mvis, M2B0=Pipeline(5, 3, (Program(5, 3, assemble("{ add }")),))),
+            ),
+            "needs 2 values",
+        ),
+    ],
+)
+def test_profiles_that_do_not_connect_are_refused(
+    change: Callable[[brdfc.Compiled], tuple[Profile, Profile]],
+    message: str,
+    ward: brdfc.Compiled,
+) -> None:
+    with pytest.raises(LinkError, match=message):
+        brdfc.connect(*change(ward))
+
+
+def test_pixels_with_another_number_of_channels_are_refused(ward: brdfc.Compiled) -> None:
+    link = brdfc.connect(ward.mid, ward.mvis)
+    for shape in ((4,), (3, 6), ()):
+        with pytest.raises(ProgramError, match="5 channels are needed"):
+            link.apply(np.zeros(shape))
+
+
+def test_empty_arrays_are_fine(ward: brdfc.Compiled) -> None:
+    link = brdfc.connect(ward.mid, ward.mvis, env={"incident": 0.5})
+    assert link.apply(np.zeros((0, 5))).shape == (0, 3)
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), 2.0, -1.6])
+def test_variables_outside_their_range_are_refused(value: float, ward: brdfc.Compiled) -> None:
+    with pytest.raises(ValueGivenError):
+        brdfc.connect(ward.mid, ward.mvis, env={"incident": value})
+
+
+def test_ninety_degrees_is_inside_and_dark(ward: brdfc.Compiled) -> None:
+    for angle in (np.pi / 2, -np.pi / 2):
+        link = brdfc.connect(ward.mid, ward.mvis, env={"incident": angle})
+        assert link.apply(PIXEL).tolist() == [0, 0, 0]
+
+
+def test_a_missing_file_is_said(tmp_path: Path, ward: brdfc.Compiled) -> None:
+    with pytest.raises(BrdfcError, match="No such file"):
+        brdfc.connect(tmp_path / "none.icc", ward.mvis)

@@ -1,0 +1,41 @@
+"""Fixtures that all tests share."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+GOLDEN = Path(__file__).parent / "golden"
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--update-golden", action="store_true", help="write the golden files anew, for review"
+    )
+
+
+@pytest.fixture
+def golden(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
+    """check(name, text): the text equals tests/golden/NAME, or the test fails with the diff."""
+
+    def check(name: str, text: str) -> None:
+        path = GOLDEN / name
+        if request.config.getoption("--update-golden"):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+            return
+        kept = path.read_text(encoding="utf-8") if path.exists() else ""
+        if kept == text:
+            return
+        state = "differs from what is kept" if kept else "is not kept yet"
+        diff = "".join(
+            difflib.unified_diff(
+                kept.splitlines(keepends=True), text.splitlines(keepends=True), "kept", "now"
+            )
+        )
+        pytest.fail(f"golden/{name} {state}; to accept it: make golden\n{diff}", pytrace=False)
+
+    return check
