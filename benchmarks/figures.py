@@ -64,7 +64,7 @@ def accuracy(folder: Path) -> None:
 
 
 def _summary(values: np.ndarray) -> str:
-    return f"median {np.median(values):.1e}  maximum {values.max():.1e}"
+    return f"median {np.median(values):.2e}  maximum {values.max():.2e}"
 
 
 def agreement(folder: Path) -> None:
@@ -115,6 +115,8 @@ def speed(folder: Path) -> None:
     brdfc_program = str(Path(sys.executable).with_name("brdfc"))
     commands = {
         "brdfc compile ward": ["compile", "ward", "-o", str(folder / "timed_mvis.icc")],
+        "  the same, --effort 1": ["compile", "ward", "-o", str(folder / "t.icc"), "--effort", "1"],
+        "  the same, --no-cache": ["compile", "ward", "-o", str(folder / "t.icc"), "--no-cache"],
         "brdfc --help": ["--help"],
     }
     for label, arguments in commands.items():
@@ -124,7 +126,7 @@ def speed(folder: Path) -> None:
             subprocess.run([brdfc_program, *arguments], check=True, capture_output=True)
             seconds.append(time.perf_counter() - start)
         counted = seconds[1:]
-        print(f"  {label:<20} median {statistics.median(counted):.3f}  least {min(counted):.3f}")
+        print(f"  {label:<24} median {statistics.median(counted):.3f}  least {min(counted):.3f}")
 
 
 def main() -> None:

@@ -62,7 +62,7 @@ def check_model(name: str) -> Iterator[Finding]:
         f"self-check: worst CIEDE2000 {verdict.worst:.1e} of {verdict.points} points, where "
         f"{verdict.worst_at}",
     )
-    for guard in compiled.formula.guards:
+    for guard in compiled.guards:
         yield Finding(OK, f"guard: {guard.reason}, in {guard.operation}")
     for law in model.laws:
         yield Finding(OPEN, f"law: {law} is claimed; laws are not checked yet")

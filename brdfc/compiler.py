@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,55 +10,45 @@ from brdfc import __version__
 from brdfc.calc.price import operations, price
 from brdfc.calc.program import Program
 from brdfc.calc.text import disassemble
-from brdfc.codegen.schedule import schedule
-from brdfc.codegen.select import Binding, ChannelBinding, VariableBinding, select
+from brdfc.encodings import Encoding, encoded, encoding
 from brdfc.icc.profile import Profile
+from brdfc.judge.cache import Remembered, key, recall, remember, steps_text, summary
 from brdfc.judge.examples import check_examples
+from brdfc.judge.explore import Explored, Problem, default_effort, explore
+from brdfc.judge.goals import Goal, goal
 from brdfc.judge.samples import sample
 from brdfc.judge.selfcheck import LIMIT, Verdict, self_check
-from brdfc.lang.model import Model, Quantity, Role
-from brdfc.lang.values import parse_value
-from brdfc.profiles.metadata import metadata, range_text, value_text
+from brdfc.lang.model import Model
+from brdfc.profiles.metadata import metadata, value_text
 from brdfc.profiles.multiplex import ProfilePair, profile_pair
-from brdfc.source.diagnostics import did_you_mean
-from brdfc.source.errors import BrdfcError, ValueGivenError
+from brdfc.roles import Roles, Value, assign_roles
+from brdfc.source.errors import BrdfcError, SelfCheckError, ValueGivenError
 from brdfc.symbolic.formula import Formula, formula
+from brdfc.symbolic.guards import Guard, guarded
+from brdfc.symbolic.ranges import Ranges
 
 XYZ_COMPONENTS = 3
+Progress = Callable[[int, int], None]
 
 
-@dataclass(frozen=True)
-class Roles:
-    """Where each quantity comes from in one compilation: the pixel, the run, or fixed now."""
-
-    channels: tuple[Quantity, ...]
-    variables: tuple[Quantity, ...]
-    constants: Mapping[str, tuple[float, ...]]
-
-    @property
-    def channel_names(self) -> tuple[str, ...]:
-        """A name a sample of a pixel: Rdx, Rdy, Rdz, ks, m."""
-        return tuple(name for q in self.channels for name in q.component_names)
-
-    def bindings(self) -> dict[str, Binding]:
-        """Channels side by side in the order of their declaration; variables by signature."""
-        bound: dict[str, Binding] = {}
-        start = 0
-        for q in self.channels:
-            bound[q.name] = ChannelBinding(start, q.type.value.width)
-            start += q.type.value.width
-        for q in self.variables:
-            bound[q.name] = VariableBinding(q.signature, q.default[0])
-        return bound
+def _silent(_done: int, _total: int) -> None:
+    """No progress shown."""
 
 
 @dataclass(frozen=True)
 class Compiled:
-    """A compiled model: its profiles, and everything worth knowing of how they came about."""
+    """A compiled model: its profiles, and everything worth knowing of how they came about.
+
+    form: the form that was chosen and how it was derived; None where every form failed to be
+    measured, and the formula stands as written. guards: what its domain made necessary.
+    """
 
     model: Model
     roles: Roles
     formula: Formula
+    goal: Goal
+    form: Remembered | None
+    guards: tuple[Guard, ...]
     program: Program
     verdict: Verdict
     pair: ProfilePair
@@ -82,20 +71,82 @@ class Compiled:
         return self.pair.save(mvis, mid)
 
 
-Value = float | str | Sequence[float]
-
-
 def compile_model(
-    model: Model, set: Mapping[str, Value] | None = None, channels: Iterable[str] = ()
+    model: Model,
+    set: Mapping[str, Value] | None = None,
+    channels: Iterable[str] = (),
+    *,
+    optimize: str = "balanced",
+    max_error: str | None = None,
+    effort: int | None = None,
+    encode: str = "calc",
+    cache: bool = True,
+    progress: Progress = _silent,
 ) -> Compiled:
     """Compile a model to a MID and an MVIS.
 
     set: quantities fixed now, by name or four-letter signature: numbers (radians for angles, one
     a component), or text as on the command line ("40deg"). channels: variables or constants that
-    come with each pixel instead. Raises ModelError, ValueGivenError, or SelfCheckError when the
-    program does not agree with the model.
+    come with each pixel instead. optimize: "speed", "balanced" or "accuracy"; max_error ("0.01dE",
+    "8ulp") overrides it. effort: equivalent forms measured at most (None: about 300); 1 keeps the
+    formula as it is written. encode: "calc", or with every variable fixed "clut:17" (a lookup
+    table) or "curve:1024" (a calculator with sampled curves). cache: use and keep searches on
+    disk. progress gets forms measured and the effort.
+
+    Raises ModelError, ValueGivenError, or SelfCheckError when the program does not agree with the
+    model.
     """
-    roles = assign_roles(model, set or {}, channels)
+    aim, how = goal(optimize, max_error), encoding(encode)
+    roles, ready = prepare(model, set or {}, channels)
+    problem = problem_of(roles, ready)
+    form = _search(problem, aim, effort, cache, progress)
+    expression = form.expression if form else ready.simple
+    safe, guards = guarded(expression, problem.ranges)
+    program = encoded(how, problem, ready, safe)
+    samples = sample(ready.domain, roles.channels, roles.variables)
+    limit = max(LIMIT, aim.limit if aim.kind == "de" else 0.0)
+    try:
+        verdict = self_check(program, ready.exact, problem.bindings, samples, limit)
+    except SelfCheckError as error:
+        if how.kind == "calc":
+            raise
+        hint = "take more points, or allow more with --max-error 0.1dE"
+        raise SelfCheckError(error.message, hint=hint) from None
+    pair = _profiles(model, roles, program, verdict, form, limit, how)
+    return Compiled(model, roles, ready, aim, form, guards, program, verdict, pair)
+
+
+def explore_model(
+    model: Model,
+    set: Mapping[str, Value] | None = None,
+    channels: Iterable[str] = (),
+    *,
+    optimize: str = "balanced",
+    max_error: str | None = None,
+    effort: int | None = None,
+    progress: Progress = _silent,
+) -> Explored:
+    """Every form of a model that a search finds, measured; arguments as for compile_model.
+
+    Raises BrdfcError where every form fails.
+    """
+    roles, ready = prepare(model, set or {}, channels)
+    problem = problem_of(roles, ready)
+    aim = goal(optimize, max_error)
+    found = explore(problem, aim, effort or default_effort(problem), progress, thorough=True)
+    if found is None:
+        raise BrdfcError(
+            f"every form of '{model.name}' gives NaN, infinity or a false zero in its domain",
+            hint="narrow the declared ranges, or add `where ... else` to the formula",
+        )
+    return found
+
+
+def prepare(
+    model: Model, set: Mapping[str, Value], channels: Iterable[str]
+) -> tuple[Roles, Formula]:
+    """The roles of the quantities, and the formula with its constants in, examples checked."""
+    roles = assign_roles(model, set, channels)
     if not roles.channels:
         raise ValueGivenError(
             "no channel is left: a profile needs one value a pixel at least",
@@ -109,79 +160,62 @@ def compile_model(
             where=str(model.radiance.span),
             hint="a colourless radiance y is written (y, y, y)" if ready.width == 1 else None,
         )
-    bindings = roles.bindings()
-    program = schedule(select(ready.prepared, bindings), len(roles.channel_names))
-    samples = sample(ready.domain, roles.channels, roles.variables)
-    verdict = self_check(program, ready.exact, bindings, samples)
-    pair = _profiles(model, roles, program, verdict)
-    return Compiled(model, roles, ready, program, verdict, pair)
+    return roles, ready
 
 
-def assign_roles(model: Model, set: Mapping[str, Value], channels: Iterable[str]) -> Roles:
-    """Which quantity is what, after --set and --channel; ValueGivenError for what cannot be."""
-    fixed = {}
-    for name, value in set.items():
-        q = _quantity(model, name)
-        fixed[q.name] = _checked(q, value)
-    pixel = {_quantity(model, name).name for name in channels}
-    both = sorted(pixel & fixed.keys())
-    if both:
-        raise ValueGivenError(f"'{both[0]}' cannot be fixed and come with the pixel too")
-    left = [q for q in model.quantities if q.name not in fixed]
-    for q in left:
-        if q.role is Role.CONSTANT and q.name not in pixel:
-            fixed[q.name] = q.default
-    return Roles(
-        tuple(q for q in left if q.role is Role.CHANNEL or q.name in pixel),
-        tuple(q for q in left if q.role is Role.ENV and q.name not in pixel),
-        fixed,
+def problem_of(roles: Roles, ready: Formula) -> Problem:
+    """What a search for forms needs to know."""
+    return Problem(
+        ready.exact,
+        ready.simple,
+        Ranges(ready.domain),
+        roles.channels + roles.variables,
+        roles.bindings(),
+        len(roles.channel_names),
     )
 
 
-def _quantity(model: Model, name: str) -> Quantity:
-    found = model.quantity(name)
-    if found is not None:
-        return found
-    for q in model.quantities:
-        if name in q.component_names:
-            raise ValueGivenError(
-                f"'{name}' is a component of '{q.name}'", hint=f"give '{q.name}' as a whole"
-            )
-    known = [q.name for q in model.quantities]
-    raise ValueGivenError(
-        f"'{model.name}' has no quantity '{name}'",
-        hint=did_you_mean(name, known) or f"it has {', '.join(known)}",
-    )
+def _search(
+    problem: Problem, aim: Goal, effort: int | None, cache: bool, progress: Progress
+) -> Remembered | None:
+    effort = effort or default_effort(problem)
+    name = key(problem, aim, effort)
+    known = recall(name) if cache else None
+    if known is not None:
+        return known
+    explored = explore(problem, aim, effort, progress)
+    if explored is None:
+        return None
+    found = summary(explored)
+    if cache and not explored.stopped:
+        remember(name, found)
+    return found
 
 
-def _checked(q: Quantity, value: Value) -> tuple[float, ...]:
-    if isinstance(value, str):
-        values = parse_value(value, q.type, q.name)
-    else:
-        width = q.type.value.width
-        given = (value,) if isinstance(value, (int, float)) else tuple(value)
-        values = given * width if len(given) == 1 else given
-        if len(values) != width or not all(map(math.isfinite, values)):
-            raise ValueGivenError(f"'{q.name}' takes {width} finite numbers, not {value}")
-    slack = 1e-9 * max(abs(q.low), abs(q.high))
-    for v in values:
-        if not q.low - slack <= v <= q.high + slack:
-            ends = range_text(q.low, q.high, q.type)
-            shown = value_text(values, q.type)
-            raise ValueGivenError(f"{q.name}={shown} lies outside its range {ends}")
-    return values
-
-
-def _profiles(model: Model, roles: Roles, program: Program, verdict: Verdict) -> ProfilePair:
+def _profiles(
+    model: Model,
+    roles: Roles,
+    program: Program,
+    verdict: Verdict,
+    form: Remembered | None,
+    limit: float,
+    how: Encoding,
+) -> ProfilePair:
     types = {q.name: q.type for q in model.quantities}
     constants = {n: value_text(v, types[n]) for n, v in roles.constants.items()}
     facts = {
-        "program": f"{operations(program)} operators, {price(program):.0f} ns a pixel "
-        "by the price table",
-        # No measured figure here: its last digits change with the machine, the bytes must not.
-        "selfcheck": f"CIEDE2000 below {LIMIT} at {verdict.points} points of the domain",
+        "program": f"{operations(program)} operators, {price(program):.0f} ns a pixel by the "
+        "price table",
+        "selfcheck": f"CIEDE2000 below {limit:g} at {verdict.points} points of the domain",
+        "encoding": str(how),
         "compiler": f"brdfc {__version__}",
     }
+    if form is not None:
+        last = form.derivation[-1].measured
+        facts["form"] = steps_text(form.derivation)
+        facts["form.error"] = (
+            f"{last.bits:.1f} bits, CIEDE2000 {last.de:.0e} at worst of {form.points} points"
+        )
     meta = metadata(model, roles.channels, roles.variables, constants, facts)
     defaults = [value for q in roles.channels for value in q.default]
     return profile_pair(model.title, program, roles.channel_names, defaults, meta)

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+import atexit
 import difflib
+import os
+import shutil
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
+# Searches are remembered for the whole run; the user's own cache and prices are left alone.
+os.environ["XDG_CACHE_HOME"] = tempfile.mkdtemp(prefix="brdfc-tests-")
+os.environ["XDG_CONFIG_HOME"] = os.environ["XDG_CACHE_HOME"]
+os.environ.pop("BRDFC_PRICES", None)
+atexit.register(shutil.rmtree, os.environ["XDG_CACHE_HOME"], ignore_errors=True)
 
 GOLDEN = Path(__file__).parent / "golden"
 

@@ -1,6 +1,6 @@
-"""The one table of calculator operators (ICC.2, 11.2.1): signature, operand, stack effect, price.
+"""The one table of calculator operators (ICC.2, 11.2.1): signature, operand, stack effect.
 
-The assembler, disassembler, binary codec, verifier, price and interpreter all read it. Only the
+The assembler, disassembler, binary codec, verifier, prices and interpreter all read it. Only the
 operators that every release of the reference engine knows are `portable`; generated code uses no
 others.
 """
@@ -65,15 +65,13 @@ ARGUMENTS: dict[Operand, int] = {
 class Operator:
     """One row: effect gives (values popped, values pushed) for the two operand arguments.
 
-    effect is None where it depends on a sub-element. price is the time one execution takes on the
-    reference engine beyond the DISPATCH that every operator costs, in nanoseconds.
+    effect is None where it depends on a sub-element.
     """
 
     name: str
     operand: Operand
     effect: Callable[[int, int], tuple[int, int]] | None
     meaning: str
-    price: float = 0.0
     portable: bool = True
 
     @property
@@ -81,9 +79,12 @@ class Operator:
         """The four bytes in a file."""
         return self.name.ljust(4).encode("ascii")
 
+    @property
+    def price(self) -> float:
+        """Nanoseconds one execution takes on the reference engine beyond a dispatch."""
+        from brdfc.calc.prices import prices
 
-DISPATCH = 4.65
-"""Nanoseconds the reference engine takes for any operator (least squares over 22 programs)."""
+        return prices().operators[self.name].first
 
 
 def _rows() -> Iterable[Operator]:
@@ -107,17 +108,17 @@ def _rows() -> Iterable[Operator]:
         "env", Operand.SIGNATURE, lambda _a, _b: (0, 2), "push a variable, then 1 if it is defined"
     )
 
-    for name, (kind, price) in {
-        "curv": ("curve set", 6.4),
-        "mtx": ("matrix", 0.0),
-        "clut": ("lookup table", 8.0),
-        "tint": ("tint array", 0.0),
-        "tJab": ("XYZ to Jab", 0.0),
-        "fJab": ("Jab to XYZ", 0.0),
-        "calc": ("calculator", 0.0),
-        "elem": ("element of any kind", 0.0),
+    for name, kind in {
+        "curv": "curve set",
+        "mtx": "matrix",
+        "clut": "lookup table",
+        "tint": "tint array",
+        "tJab": "XYZ to Jab",
+        "fJab": "Jab to XYZ",
+        "calc": "calculator",
+        "elem": "element of any kind",
     }.items():
-        yield Operator(name, Operand.ELEMENT, None, f"apply a {kind}", price)
+        yield Operator(name, Operand.ELEMENT, None, f"apply a {kind}")
 
     yield Operator(
         "copy", Operand.COPIES, lambda n, t: (n, n * (t + 1)), "repeat the top n values t times"
@@ -147,73 +148,73 @@ def _rows() -> Iterable[Operator]:
     }.items():
         yield Operator(name, fold, lambda n, _b: (n, 1), meaning)
 
-    for name, (meaning, price) in {
-        "add": ("x + y", 0.0),
-        "sub": ("x - y", 0.0),
-        "mul": ("x y", 0.0),
-        "div": ("x / y; 0 where y is 0", 0.0),
-        "mod": ("remainder of x / y with the sign of x; 0 where y is 0", 0.0),
-        "pow": ("x to the power y", 11.6),
-        "atn2": ("the angle whose tangent is y / x, by quadrant", 12.9),
-        "lt": ("1 if x < y", 0.0),
-        "le": ("1 if x <= y", 0.0),
-        "eq": ("1 if x = y", 0.0),
-        "neq": ("1 if x differs from y", 0.0),
-        "near": ("1 if |x - y| < 1e-5", 0.0),
-        "ge": ("1 if x >= y", 0.0),
-        "gt": ("1 if x > y", 0.0),
-        "vmin": ("the lesser; y where x is not a number", 0.0),
-        "vmax": ("the greater; y where x is not a number", 0.0),
-        "vand": ("1 if both hold", 0.0),
-        "vor": ("1 if either holds", 0.0),
+    for name, meaning in {
+        "add": "x + y",
+        "sub": "x - y",
+        "mul": "x y",
+        "div": "x / y; 0 where y is 0",
+        "mod": "remainder of x / y with the sign of x; 0 where y is 0",
+        "pow": "x to the power y",
+        "atn2": "the angle whose tangent is y / x, by quadrant",
+        "lt": "1 if x < y",
+        "le": "1 if x <= y",
+        "eq": "1 if x = y",
+        "neq": "1 if x differs from y",
+        "near": "1 if |x - y| < 1e-5",
+        "ge": "1 if x >= y",
+        "gt": "1 if x > y",
+        "vmin": "the lesser; y where x is not a number",
+        "vmax": "the greater; y where x is not a number",
+        "vand": "1 if both hold",
+        "vor": "1 if either holds",
     }.items():
-        yield Operator(name, vector, lambda n, _b: (2 * n, n), meaning, price)
+        yield Operator(name, vector, lambda n, _b: (2 * n, n), meaning)
 
-    for name, (meaning, price) in {
-        "gama": ("x to the power s", 11.6),
-        "sadd": ("x + s", 0.0),
-        "ssub": ("x - s", 0.0),
-        "smul": ("x s", 0.0),
-        "sdiv": ("x / s; 0 where s is 0", 0.0),
+    for name, meaning in {
+        "gama": "x to the power s",
+        "sadd": "x + s",
+        "ssub": "x - s",
+        "smul": "x s",
+        "sdiv": "x / s; 0 where s is 0",
     }.items():
-        yield Operator(name, vector, lambda n, _b: (n + 1, n), meaning, price)
+        yield Operator(name, vector, lambda n, _b: (n + 1, n), meaning)
 
-    for name, (meaning, price) in {
-        "neg": ("-x", 0.0),
-        "sq": ("x x", 0.0),
-        "sqrt": ("square root", 0.0),
-        "cb": ("x x x", 0.0),
-        "cbrt": ("cube root", 2.0),
-        "sign": ("1, 0 or -1", 0.0),
-        "abs": ("|x|", 0.0),
-        "flor": ("greatest whole number not above x", 0.0),
-        "ceil": ("least whole number not below x", 0.0),
-        "trnc": ("x without its fraction", 0.0),
-        "rond": ("nearest whole number, halves away from 0", 0.0),
-        "exp": ("e to the power x", 1.4),
-        "log": ("logarithm to base 10", 2.2),
-        "ln": ("natural logarithm", 2.2),
-        "sin": ("sine", 2.2),
-        "cos": ("cosine", 2.2),
-        "tan": ("tangent", 12.9),
-        "asin": ("arc sine", 12.9),
-        "acos": ("arc cosine", 12.9),
-        "atan": ("arc tangent", 12.9),
-        "rnum": ("1 if x is a finite number", 0.0),
-        "not": ("1 if x does not hold", 0.0),
+    for name, meaning in {
+        "neg": "-x",
+        "sq": "x x",
+        "sqrt": "square root",
+        "cb": "x x x",
+        "cbrt": "cube root",
+        "sign": "1, 0 or -1",
+        "abs": "|x|",
+        "flor": "greatest whole number not above x",
+        "ceil": "least whole number not below x",
+        "trnc": "x without its fraction",
+        "rond": "nearest whole number, halves away from 0",
+        "exp": "e to the power x",
+        "log": "logarithm to base 10",
+        "ln": "natural logarithm",
+        "sin": "sine",
+        "cos": "cosine",
+        "tan": "tangent",
+        "asin": "arc sine",
+        "acos": "arc cosine",
+        "atan": "arc tangent",
+        "rnum": "1 if x is a finite number",
+        "not": "1 if x does not hold",
     }.items():
-        yield Operator(name, vector, lambda n, _b: (n, n), meaning, price)
+        yield Operator(name, vector, lambda n, _b: (n, n), meaning)
 
     for name, meaning in {
         "ctop": "x, y to radius and hue in degrees",
         "ptoc": "radius and hue in degrees to x, y",
     }.items():
-        yield Operator(name, vector, lambda n, _b: (2 * n, 2 * n), meaning, 12.9)
+        yield Operator(name, vector, lambda n, _b: (2 * n, 2 * n), meaning)
     for name, meaning in {
         "tLab": "XYZ relative to white to CIELAB",
         "tXYZ": "CIELAB to XYZ relative to white",
     }.items():
-        yield Operator(name, vector, lambda n, _b: (3 * n, 3 * n), meaning, 6.0)
+        yield Operator(name, vector, lambda n, _b: (3 * n, 3 * n), meaning)
 
     yield Operator("noop", none, lambda _a, _b: (0, 0), "nothing", portable=False)
     yield Operator("scnt", none, lambda _a, _b: (0, 1), "push the stack's depth", portable=False)
@@ -225,3 +226,12 @@ BY_SIGNATURE: dict[bytes, Operator] = {o.signature: o for o in OPERATORS.values(
 
 # Control flow is not an operator of the table: it has blocks in the text and jump lengths in files.
 IF, ELSE, SELECT, CASE, DEFAULT = b"if  ", b"else", b"sel ", b"case", b"dflt"
+
+
+def __getattr__(name: str) -> float:
+    """DISPATCH: nanoseconds the reference engine takes for any operator, by the table in use."""
+    if name == "DISPATCH":
+        from brdfc.calc.prices import prices
+
+        return prices().dispatch
+    raise AttributeError(name)

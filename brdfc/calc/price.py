@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 
-from brdfc.calc.curves import CurveSet
-from brdfc.calc.operators import DISPATCH, Operand
-from brdfc.calc.program import Block, Element, If, Op, Program, encoded_length
+from brdfc.calc.operators import OPERATORS, Operand
+from brdfc.calc.prices import prices
+from brdfc.calc.program import Block, Element, If, Matrix, Op, Program, encoded_length
 from brdfc.calc.tables import LookupTable
 
-TABLE_CORNER = 0.48
-"""Nanoseconds for the weight of a corner of a lookup table, and for each output there."""
+_KINDS = {"cvst": "curv", "matf": "mtx", "clut": "clut", "xclt": "clut", "calc": "calc"}
 
 
 def operations(program: Program) -> int:
@@ -19,38 +19,101 @@ def operations(program: Program) -> int:
 
 
 def price(program: Program) -> float:
-    """Nanoseconds a pixel on the reference engine, by the price column of the operator table."""
+    """Nanoseconds a pixel on the reference engine, beside what any program costs (`fixed`)."""
     return nanoseconds(program.body, program.elements)
 
 
-def nanoseconds(block: Block, elements: Sequence[Element] = ()) -> float:
-    """Time per pixel of a block's dearest path, by the price column of the operator table.
+def fixed() -> float:
+    """Nanoseconds a pixel takes before any operator of the program, its way through MID included.
+    `price` is beyond this."""
+    return prices().pixel
 
-    A vector operator costs its price for each component, a curve set for each curve, a lookup table
-    TABLE_CORNER besides. Without its elements, a block's calls count as if of one channel. What
-    called calculators and matrices cost is not counted.
+
+def cost(name: str, components: int = 1) -> float:
+    """Nanoseconds one step takes: an operator, or one of prices.CONTROL without its blocks."""
+    table = prices()
+    row = table.operators[name]
+    return table.dispatch + row.first + (components - 1) * row.more
+
+
+def nanoseconds(block: Block, elements: Sequence[Element] = ()) -> float:
+    """Time per pixel of a block's dearest path. Variables count as defined: an `if` right after
+    `env` runs its first block. Without its elements, a block's calls count as if of one channel.
     """
     total = 0.0
-    for instruction in block:
-        if isinstance(instruction, Op):
-            operator = instruction.operator
-            components = instruction.first if operator.operand is Operand.VECTOR else 1
-            total += DISPATCH + components * operator.price
-            if operator.operand is Operand.ELEMENT and instruction.first < len(elements):
-                total += _beyond_one(elements[instruction.first], operator.price)
-        else:
-            # The engine steps over `else`; it finds a case by its number.
-            steps = len(instruction.bodies) if isinstance(instruction, If) else 1
-            total += steps * DISPATCH + max(
-                nanoseconds(body, elements) for body in instruction.bodies
-            )
+    for name, count, bodies in steps(block, elements):
+        total += cost(name, count)
+        if bodies:
+            total += max(nanoseconds(*body) for body in bodies)
     return total
 
 
-def _beyond_one(element: Element, price: float) -> float:
-    """What an element costs beyond the price of its operator."""
-    if isinstance(element, CurveSet):
-        return (element.inputs - 1) * price
+Bodies = tuple[tuple[Block, Sequence[Element]], ...]
+
+
+def steps(block: Block, elements: Sequence[Element]) -> Iterator[tuple[str, int, Bodies]]:
+    """What the engine does one after the other: the name of a price, how many components it is
+    for, and the blocks of which one runs then."""
+    constants, before = 0, ""
+    for instruction in block:
+        name = instruction.name if isinstance(instruction, Op) else ""
+        if name == "data":  # a run of them is one step
+            constants += 1
+            continue
+        if constants:
+            yield "data", constants, ()
+            constants, before = 0, "data"
+        if isinstance(instruction, Op):
+            if OPERATORS[name].operand is Operand.ELEMENT:
+                yield _call(instruction, elements)
+            else:
+                yield name, components(instruction), ()
+        elif isinstance(instruction, If):
+            bodies = instruction.bodies[:1] if before == "env" else instruction.bodies
+            kind = "if_else" if instruction.complete else "if"
+            yield kind, 1, tuple((body, elements) for body in bodies)
+        else:
+            yield "sel", 1, tuple((body, elements) for body in instruction.bodies)
+        before = name
+    if constants:
+        yield "data", constants, ()
+
+
+def work(block: Block, elements: Sequence[Element] = ()) -> Counter[tuple[str, str]]:
+    """How often each price counts, where the longest block of a choice is the one that runs."""
+    found: Counter[tuple[str, str]] = Counter()
+    for name, count, bodies in steps(block, elements):
+        found[name, "first"] += 1
+        found[name, "more"] += count - 1
+        if bodies:
+            found += work(*max(bodies, key=lambda body: encoded_length(body[0])))
+    return found
+
+
+def components(op: Op) -> int:
+    """How many values an operator works on, at least one."""
+    operand = OPERATORS[op.name].operand
+    if operand in (Operand.SPAN, Operand.POSITION):
+        return op.second
+    if operand is Operand.FOLD:
+        return op.first - 1
+    if operand is Operand.COPIES or op.name == "tran":
+        return op.first * op.second
+    if operand in (Operand.VECTOR, Operand.ROTATION):
+        return op.first
+    return 1
+
+
+def _call(op: Op, elements: Sequence[Element]) -> tuple[str, int, Bodies]:
+    """A call of an element: curves, entries of a matrix, or weights and values of a table's
+    corners are its components; a calculator runs its function."""
+    if op.first >= len(elements):
+        return op.name, 1, ()
+    element = elements[op.first]
+    name = _KINDS.get(element.signature, op.name)
+    if isinstance(element, Program):
+        return name, 1, ((element.body, element.elements),)
     if isinstance(element, LookupTable):
-        return TABLE_CORNER * (1 + element.outputs) * (1 << element.inputs)
-    return 0.0
+        return name, (1 + element.outputs) << element.inputs, ()
+    entries = element.inputs * element.outputs if isinstance(element, Matrix) else element.inputs
+    return name, max(entries, 1), ()

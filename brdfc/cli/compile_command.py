@@ -1,8 +1,14 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 
 from brdfc.cli.options import pairs
+from brdfc.cli.search_options import end_progress, search_options, shown_progress
+
+if TYPE_CHECKING:
+    from brdfc.compiler import Compiled
 
 
 @click.command("compile")
@@ -24,6 +30,16 @@ from brdfc.cli.options import pairs
     help="Take a quantity from each pixel: angles of a curved surface, say. Repeatable.",
 )
 @click.option("--asm", metavar="FILE", help="Write the calculator text too.")
+@click.option(
+    "--encode",
+    default="calc",
+    metavar="calc|clut:N|curve:N",
+    help="A calculator program (default), a lookup table of N points a channel, or a calculator "
+    "with curves of N points; the last two need every variable fixed with --set.",
+)
+@search_options
+@click.option("--explain", is_flag=True, help="Show how the chosen form was derived.")
+@click.option("--no-cache", is_flag=True, help="Search anew, and keep nothing.")
 def command(
     model: str,
     output: str,
@@ -31,10 +47,17 @@ def command(
     fixed: tuple[str, ...],
     channels: tuple[str, ...],
     asm: str | None,
+    encode: str,
+    optimize: str,
+    max_error: str | None,
+    effort: int | None,
+    explain: bool,
+    no_cache: bool,
 ) -> None:
     """Compile MODEL, a .brdf file or a library model, to a MID and an MVIS profile.
 
-    The program is checked against the model in high precision over its whole domain before
+    Equivalent forms of the formula are searched, and the cheapest that is accurate enough is
+    taken. The program is checked against the model in high precision over its whole domain before
     anything is written.
 
     \b
@@ -42,13 +65,25 @@ def command(
       brdfc compile ward -o ward_mvis.icc
       brdfc compile ward -o baked_mvis.icc --set incident=40deg --set reflection=10deg
       brdfc compile ward -o curved_mvis.icc --channel incident --channel reflection
+      brdfc compile ward -o exact_mvis.icc --optimize accuracy --explain
     """
     from brdfc.calc.price import operations, price
     from brdfc.compiler import compile_model
     from brdfc.files import write_whole
     from brdfc.lang.load import load
 
-    compiled = compile_model(load(model), pairs(fixed, "--set"), channels)
+    compiled = compile_model(
+        load(model),
+        pairs(fixed, "--set"),
+        channels,
+        optimize=optimize,
+        max_error=max_error,
+        effort=effort,
+        encode=encode,
+        cache=not no_cache,
+        progress=shown_progress,
+    )
+    end_progress()
     mid_path, mvis_path = compiled.save(output, mid)
     if asm:
         write_whole(asm, compiled.text.encode())
@@ -61,7 +96,9 @@ def command(
         f"a pixel on the reference engine; stack {verdict.facts.stack}, "
         f"temporaries {verdict.facts.temporaries}"
     )
-    for guard in compiled.formula.guards:
+    if compiled.form is not None:
+        _show_form(compiled, explain)
+    for guard in compiled.guards:
         click.echo(f"guard        {guard.reason}, in {_short(guard.operation)}")
     click.echo(
         f"self-check   worst CIEDE2000 {verdict.worst:.1e} at {verdict.points} points of the domain"
@@ -69,6 +106,28 @@ def command(
     )
     for path in (mid_path, mvis_path, *([asm] if asm else [])):
         click.echo(f"wrote        {path}")
+
+
+def _show_form(compiled: Compiled, explain: bool) -> None:
+    from brdfc.judge.cache import steps_text
+
+    form = compiled.form
+    assert form is not None
+    last = form.derivation[-1].measured
+    click.echo(f"form         {steps_text(form.derivation)}")
+    click.echo(
+        f"             worst {last.bits:.1f} bits, CIEDE2000 {last.de:.1e} at {form.points:,} "
+        f"points; {compiled.goal}, of {form.forms} forms"
+    )
+    if explain:
+        for step in form.derivation:
+            if step.rule:
+                click.echo(f"  {step.rule}: {step.before}  ->  {step.after}")
+            m = step.measured
+            click.echo(
+                f"    {step.price:.0f} ns, worst {m.bits:.2f} bits (mean {m.mean_bits:.2f}), "
+                f"CIEDE2000 {m.de:.1e}"
+            )
 
 
 def _short(text: str) -> str:

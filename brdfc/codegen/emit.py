@@ -10,6 +10,8 @@ from brdfc.calc.operators import OPERATORS, Operand
 from brdfc.calc.program import Block, If, Instruction, Op
 from brdfc.codegen.nodes import Node
 
+_TEMPORARY = ("tget", "tput", "tsav")
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -62,9 +64,49 @@ class _Emitter:
         self.left -= 1
         if self.left < 0:
             raise _TooLongError
+        if node.operator == "part":
+            self.part(node, path)
+            return
         if node.cheap or not (self.copied(node, path) or self.fetched(node, path)):
             self.computed(node, path)
         path.stack += [(node, i) for i in range(node.width)]
+
+    def part(self, node: Node, path: _Path) -> None:
+        """One value of a group: copied from the stack, or fetched after the group is put away."""
+        (group,), index = node.arguments, node.start
+        if (group, index) in path.stack:
+            position = path.stack[::-1].index((group, index)) + 1
+            path.code.append(Op("posd", position, 1) if position > 1 else Op("copy", 1, 1))
+        else:
+            if group not in path.saved:
+                self.value(group, path)
+                del path.stack[len(path.stack) - group.width :]
+                saving = path.code.pop()
+                assert isinstance(saving, Op), saving
+                path.code.append(Op("tput", saving.first, saving.second))
+            self.reads[path.saved[group]] += 1
+            push_span(path.code, "tget", path.saved[group] + index, 1)
+        path.stack.append((group, index))
+
+    def arguments(self, nodes: list[Node], path: _Path) -> None:
+        """Leave several nodes' values on the stack; all parts of a group in order are the group."""
+        at = 0
+        while at < len(nodes):
+            group = nodes[at].arguments[0] if nodes[at].operator == "part" else None
+            run = nodes[at : at + group.width] if group else []
+            if (
+                group
+                and all(
+                    n.operator == "part" and n.arguments[0] is group and n.start == i
+                    for i, n in enumerate(run)
+                )
+                and len(run) == group.width
+            ):
+                self.value(group, path)
+                at += group.width
+            else:
+                self.value(nodes[at], path)
+                at += 1
 
     def copied(self, node: Node, path: _Path) -> bool:
         """Copy the values where they still stand on the stack."""
@@ -98,8 +140,7 @@ class _Emitter:
             arguments = list(node.arguments)
             if node in self.plan.swapped:
                 arguments[:2] = arguments[1::-1]
-            for argument in arguments:
-                self.value(argument, path)
+            self.arguments(arguments, path)
             self.operator(node, path)
         del path.stack[depth:]
         if node in self.plan.kept:
@@ -158,11 +199,10 @@ class _Emitter:
     def without_unread(self, block: Block) -> Block:
         """The block without saves that nothing reads, temporaries numbered without gaps."""
         places: dict[int, int] = {}
-        free = 0
         for node, start in self.temporaries.items():
             if self.reads[start]:
-                places[start] = free
-                free += node.width
+                for index in range(start, start + node.width):
+                    places[index] = len(places)
 
         def clean(block: Block) -> Block:
             cleaned: list[Instruction] = []
@@ -172,7 +212,7 @@ class _Emitter:
                     instruction = If(
                         clean(instruction.then), None if otherwise is None else clean(otherwise)
                     )
-                elif isinstance(instruction, Op) and instruction.name in ("tsav", "tget"):
+                elif isinstance(instruction, Op) and instruction.name in _TEMPORARY:
                     if instruction.first not in places:
                         continue
                     start = places[instruction.first]

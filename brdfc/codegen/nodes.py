@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from weakref import WeakValueDictionary
 
 
@@ -11,8 +11,9 @@ class Node:
     """An operator of the calculator on the values its arguments leave on the stack.
 
     operator: a name of the operator table with its vector width, fold count or sub-element in
-    `count`, or one of `where` (condition, value, otherwise), `vector` (values side by side), `env`.
-    width: values it leaves. start: first channel of `in`. value: of `data`, and the default of
+    `count`, or one of `where` (condition, value, otherwise), `vector` (values side by side), `env`,
+    `part` (one value of a group). width: values it leaves. start: first channel of `in`, index of
+    a `part`. value: of `data`, and the default of
     `env`, whose four letters are signature.
     """
 
@@ -70,6 +71,16 @@ def vector(values: list[Node]) -> Node:
 def where(condition: Node, value: Node, otherwise: Node) -> Node:
     """value where the condition holds, else otherwise; only that one is computed."""
     return _intern(Node("where", (condition, value, otherwise), value.width))
+
+
+def part(group: Node, index: int) -> Node:
+    """One value of an operator that leaves several."""
+    return _intern(Node("part", (group,), 1, start=index))
+
+
+def rebuilt(node: Node, arguments: tuple[Node, ...]) -> Node:
+    """The same operator on other arguments."""
+    return _intern(replace(node, arguments=arguments))
 
 
 def postorder(root: Node) -> list[Node]:

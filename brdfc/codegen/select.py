@@ -16,6 +16,7 @@ from brdfc.source.errors import BrdfcError
 from brdfc.symbolic.bounds import LONGEST_CHAIN
 from brdfc.symbolic.expression import (
     ONE,
+    ZERO,
     Expression,
     component,
     const,
@@ -122,7 +123,7 @@ class _Selector:
             case "where":
                 condition, value, otherwise = e.arguments
                 values = (self.wide(value, e.width), self.wide(otherwise, e.width))
-                return where(self.node(condition), *values)
+                return where(self.condition(condition), *values)
             case "pow":
                 return self.power(e)
             case "atan2":  # the operator takes x first, the ordinate on top
@@ -133,6 +134,13 @@ class _Selector:
             case _:
                 arguments = [self.wide(a, e.width) for a in e.arguments]
                 return apply(_NAMES[e.operator], *arguments, width=e.width, count=e.width)
+
+    def condition(self, e: Expression) -> Node:
+        """What `if` tests: it holds from one half on, so the ceiling of a value within -1..1 says
+        whether that is above 0, with one operator instead of two."""
+        if e.operator == "gt" and e.arguments[1] is ZERO and _within_one(e.arguments[0]):
+            return apply("ceil", self.node(e.arguments[0]), width=1)
+        return self.node(e)
 
     def quantity(self, e: Expression) -> Node:
         binding = self.bindings[e.name]
@@ -219,6 +227,13 @@ def _whole_power(base: Node, n: int) -> Node:
     if n % 2 == 0:
         return unary("sq", _whole_power(base, n // 2))
     return apply("mul", _whole_power(base, n - 1), base, width=width, count=width)
+
+
+def _within_one(e: Expression) -> bool:
+    """Whether an expression lies within -1..1 by what it is made of."""
+    if e.operator in ("min", "max", "mul"):
+        return all(map(_within_one, e.arguments))
+    return e.operator in ("sin", "cos")
 
 
 def _constant(e: Expression) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -14,7 +16,10 @@ def srgb(xyz: ArrayLike) -> tuple[NDArray[np.uint8], int]:
     Returns the picture and how many pixels lay outside what sRGB can show; those are clipped,
     channel by channel.
     """
-    import colour
+    with warnings.catch_warnings():
+        # It warns of optional packages that this needs none of.
+        warnings.simplefilter("ignore")
+        import colour
 
     values = np.asarray(xyz, dtype=np.float64)
     encoded = colour.XYZ_to_sRGB(

@@ -48,8 +48,10 @@ def self_check(
     exact: Expression,
     bindings: Mapping[str, Binding],
     samples: Samples,
+    limit: float = LIMIT,
 ) -> Verdict:
-    """Judge a program by the model's exact expression; SelfCheckError when it fails."""
+    """Judge a program by the model's exact expression; SelfCheckError when it fails, or differs by
+    more than limit CIEDE2000 anywhere."""
     _check_encodings(program)
     facts = verify(program)
     points, undefined, worst, worst_at = 0, 0, 0.0, ""
@@ -66,7 +68,7 @@ def self_check(
             )
         known = _known(truth)
         difference = _differences(result, truth)
-        for i in np.flatnonzero(difference > LIMIT):
+        for i in np.flatnonzero(difference > limit):
             near = _nearby_truths(exact, variables, columns, int(i))
             difference[i] = np.min([difference[i], *_differences(result[i], near)])
         index = int(np.argmax(difference))
@@ -79,9 +81,9 @@ def self_check(
             f"the formula has no finite value at any of {points} points of its domain",
             hint="look for roots of negative numbers, divisions by 0, and constants that overflow",
         )
-    if worst > LIMIT:
+    if worst > limit:
         raise SelfCheckError(
-            f"the program differs from the model by {worst:.3g} CIEDE2000 (limit {LIMIT}) where "
+            f"the program differs from the model by {worst:.3g} CIEDE2000 (limit {limit:g}) where "
             f"{worst_at}",
             hint="a difference of nearly equal numbers loses the digits: 1 - cos(x), sec(x)^2 - 1;"
             " write it as 2 sin(x/2)^2 or tan(x)^2, or narrow the range",

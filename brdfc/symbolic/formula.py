@@ -20,10 +20,12 @@ from brdfc.symbolic.simplify import simplified
 @dataclass(frozen=True)
 class Formula:
     """exact: the radiance as the model writes it, every function inlined, constants put in; the
-    truth a program is judged by. prepared: the same function, simplified by its ranges and guarded
-    where its domain reaches a break. domain: the ranges of the quantities left in it."""
+    truth a program is judged by. simple: the same function, simplified by its ranges; equivalent
+    forms start from it. prepared: the same, guarded where its domain reaches a break. domain: the
+    ranges of the quantities left in it."""
 
     exact: Expression
+    simple: Expression
     prepared: Expression
     domain: Mapping[str, Interval]
     guards: tuple[Guard, ...]
@@ -41,8 +43,16 @@ def formula(model: Model, values: Mapping[str, tuple[float, ...]]) -> Formula:
     """
     exact = build(model.radiance, values)
     left = domain(tuple(q for q in model.quantities if q.name not in values))
-    ready, guards = prepared(exact, left)
-    return Formula(exact, ready, left, guards)
+    simple = simplest(exact, left)
+    safe, guards = guarded(simple, Ranges(left))
+    return Formula(exact, simple, fold_constants(safe), left, guards)
+
+
+def simplest(exact: Expression, domain: Mapping[str, Interval]) -> Expression:
+    """An expression with its constants folded, simplified by its ranges, its products tidy."""
+    simple = rewrite(fold_constants(exact), Ranges(domain), simplified)
+    tidy = fold_constants(tidy_products(simple, Ranges(domain)))
+    return rewrite(tidy, Ranges(domain), simplified)
 
 
 def prepared(
@@ -52,7 +62,5 @@ def prepared(
 
     Inside its own domain the value is the same, up to the rounding of constants to 50 digits.
     """
-    simple = rewrite(fold_constants(exact), Ranges(domain), simplified)
-    tidy = fold_constants(tidy_products(simple, Ranges(domain)))
-    safe, guards = guarded(rewrite(tidy, Ranges(domain), simplified), Ranges(domain))
+    safe, guards = guarded(simplest(exact, domain), Ranges(domain))
     return fold_constants(safe), guards

@@ -9,6 +9,7 @@ left as written where the joint factors might overflow or underflow and the writ
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import reduce
@@ -77,7 +78,7 @@ class _Tidier:
         written = rebuild(e, [self.visit(a, ranges) for a in e.arguments])
         if not 1 / _GREATEST_COEFFICIENT < abs(factors.coefficient) < _GREATEST_COEFFICIENT:
             return written
-        tidy = _product(factors, e.width)
+        tidy = product(factors.coefficient, factors.above, factors.below, e.width)
         before, after = ranges.of(e), ranges.of(tidy)
         overflows = before.finite and not after.finite
         underflows = after.has_zero and not before.has_zero
@@ -112,20 +113,25 @@ class _Tidier:
         return abs(exponent) <= _GREATEST_POWER or e.arguments[0].operator not in _OPENED
 
 
-def _product(factors: _Factors, width: int) -> Expression:
-    above = [_power(base, n) for base, n in factors.above.items()]
-    below = [_power(base, n) for base, n in factors.below.items()]
-    scalars = [f for f in above if f.width == 1]
-    vectors = [f for f in above if f.width > 1]
-    wide_below = [f for f in below if f.width > 1]
-    below = [f for f in below if f.width == 1]
-    coefficient = factors.coefficient
-    negative = coefficient < 0 and abs(coefficient) == 1
+def product(
+    coefficient: Fraction,
+    above: Mapping[Expression, int],
+    below: Mapping[Expression, int],
+    width: int,
+) -> Expression:
+    """coefficient times powers of bases above the line, over those below it: scalars first, with
+    the coefficient, one division, then vectors."""
+    over = [_power(base, n) for base, n in above.items()]
+    under = [_power(base, n) for base, n in below.items()]
+    scalars = [f for f in over if f.width == 1]
+    vectors = [f for f in over if f.width > 1]
+    wide_below = [f for f in under if f.width > 1]
+    scalars_below = [f for f in under if f.width == 1]
     if abs(coefficient) != 1:
         scalars.append(const(coefficient))
-    result = _times(scalars)
-    if below:
-        result = make("div", ONE if result is None else result, _joined(below))
+    result = _joined(scalars) if scalars else None
+    if scalars_below:
+        result = make("div", ONE if result is None else result, _joined(scalars_below))
     if vectors:
         result = _joined(vectors) if result is None else _scaled(_joined(vectors), result)
     if result is None:
@@ -134,7 +140,7 @@ def _product(factors: _Factors, width: int) -> Expression:
         result = make("div", result, _joined(wide_below))
     if result.width != width:
         result = vector([result] * width)
-    return make("neg", result) if negative else result
+    return make("neg", result) if coefficient == -1 else result
 
 
 def _scaled(vectors: Expression, scalar: Expression) -> Expression:
@@ -146,10 +152,6 @@ def _scaled(vectors: Expression, scalar: Expression) -> Expression:
 
 def _power(base: Expression, exponent: int) -> Expression:
     return base if exponent == 1 else make("pow", base, const(exponent))
-
-
-def _times(factors: list[Expression]) -> Expression | None:
-    return _joined(factors) if factors else None
 
 
 def _joined(factors: list[Expression]) -> Expression:

@@ -20,7 +20,6 @@ from brdfc.calc.curves import (
     SampledSegment,
     SegmentedCurve,
 )
-from brdfc.calc.price import nanoseconds
 from brdfc.calc.program import Op, Program
 from brdfc.calc.samples import Samples, Storage
 from brdfc.calc.tables import LookupTable
@@ -265,13 +264,3 @@ def test_the_corners_of_a_table_count_as_work():
     verify(Program(16, 1, call * 8, (table,)))
     with pytest.raises(ProgramError, match="more than 10,000,000 steps"):
         verify(Program(16, 1, call * 9, (table,)))
-
-
-def test_prices():
-    body = assemble("{ in curv(0) in[0,2] clut(1) out }")
-    lone = CurveSet((ALONE[0],))
-    table = LookupTable(2, 1, (2, 2), Samples.of([0] * 4))
-    assert nanoseconds(body, (lone, table)) == pytest.approx(nanoseconds(body) + 4 * 2 * 0.48)
-    wide = assemble("{ in[0,3] curv(0) out[0,3] }")
-    apart = nanoseconds(wide, (CurveSet((ALONE[0],) * 3),)) - nanoseconds(wide)
-    assert apart == pytest.approx(2 * 6.4)

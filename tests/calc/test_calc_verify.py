@@ -7,8 +7,8 @@ from calc_programs import programs
 from hypothesis import given, settings
 
 from brdfc.calc.binary import decode_element, encode_element
-from brdfc.calc.operators import DISPATCH, OPERATORS, Operand
-from brdfc.calc.price import nanoseconds, operations
+from brdfc.calc.operators import OPERATORS, Operand
+from brdfc.calc.price import operations
 from brdfc.calc.program import Matrix, Op, OpaqueElement, Program, encoded_length
 from brdfc.calc.text import assemble
 from brdfc.calc.verify import Facts, portability, verify
@@ -168,21 +168,6 @@ def test_portability_of_called_calculators():
     assert portability(outer) == [
         "sub-element 0, op 1: 'rond' gives different results at its extremes"
     ]
-
-
-@pytest.mark.parametrize(
-    ("text", "dispatches", "extra"),
-    [
-        ("{ in 2 mul out }", 4, 0.0),
-        ("{ in tan out }", 3, 12.9),
-        ("{ in copy(1,2) tan[3] }", 3, 3 * 12.9),
-        ("{ in if { tan } }", 3, 12.9),
-        ("{ in if { 1 2 } else { tan } }", 4, 12.9),
-        ("{ in sel case { tan } case { 1 2 3 4 5 } dflt { } }", 7, 0.0),
-    ],
-)
-def test_price(text, dispatches, extra):
-    assert nanoseconds(assemble(text)) == pytest.approx(dispatches * DISPATCH + extra)
 
 
 def test_effects_of_the_table():

@@ -11,12 +11,13 @@ import pytest
 
 from brdfc import load
 from brdfc.calc.program import Block, If, Instruction, Op, Program
-from brdfc.compiler import Compiled, assign_roles, compile_model
+from brdfc.compiler import Compiled, compile_model
 from brdfc.engine import kernels
 from brdfc.judge.samples import sample
 from brdfc.judge.selfcheck import LIMIT, self_check
 from brdfc.lang.load import load_text
 from brdfc.lang.model import Model
+from brdfc.roles import assign_roles
 from brdfc.source.errors import ProgramError, SelfCheckError
 from brdfc.symbolic.evaluate import evaluate_precisely
 from brdfc.symbolic.ranges import domain
@@ -95,7 +96,7 @@ def scaled(op: Op, value: float) -> Op:
 
 @pytest.mark.parametrize("name", ["ward", "lambert", "ward_printed", "cook_torrance"])
 def test_every_constant_that_is_off_by_one_in_ten_thousand_is_noticed(name: str) -> None:
-    c = compile_model(load(name))
+    c = compile_model(load(name), effort=1)
     for value in set(constants(c.program.body)):
         # The default of an angle that the run always gives is never read.
         if value == pytest.approx(np.pi / 4):
@@ -114,22 +115,20 @@ def test_a_wrong_sign_is_noticed(ward: Compiled) -> None:
         check(c, minus)
 
 
-@pytest.mark.parametrize(("old", "new"), [("gt", "lt"), ("gt", "ne"), ("vmin", "vmax")])
+@pytest.mark.parametrize(("old", "new"), [("ceil", "flor"), ("ceil", "neg"), ("vmin", "vmax")])
 def test_a_wrong_condition_is_noticed(ward: Compiled, old: str, new: str) -> None:
-    name = {"ne": "neq"}.get(new, new)
-    program = broken(ward, lambda op: Op(name, op.first) if op.name == old else op)
+    program = broken(ward, lambda op: Op(new, op.first) if op.name == old else op)
     with pytest.raises(SelfCheckError):
         check(ward, program)
 
 
 def test_temporaries_exchanged_are_noticed(ward: Compiled) -> None:
-    reads = sorted({o.first for o in _ops(ward.program.body) if o.name == "tget" and o.second == 1})
+    reads = sorted({o.first for o in _ops(ward.program.body) if o.name == "tget"})
     first, second = reads[0], reads[-1]
     exchange = {first: second, second: first}
 
     def change(op: Op) -> Op:
-        single_read = op.name == "tget" and op.second == 1
-        return Op("tget", exchange.get(op.first, op.first), 1) if single_read else op
+        return Op("tget", exchange.get(op.first, op.first), op.second) if op.name == "tget" else op
 
     with pytest.raises((SelfCheckError, ProgramError)):
         check(ward, broken(ward, change))
@@ -148,7 +147,7 @@ def _ops(block: Block) -> list[Op]:
 
 def test_a_guard_that_is_gone_is_noticed() -> None:
     c = compiled("Rd*sqrt(x)", -1, 1)
-    assert c.formula.guards
+    assert c.guards
     keep_left = broken(c, lambda op: Op("vmin", op.first) if op.name == "vmax" else op)
     with pytest.raises(SelfCheckError, match="the program gives"):
         check(c, keep_left)
@@ -193,9 +192,9 @@ def test_cancellation_is_refused_where_the_lobe_is_narrow() -> None:
     narrow = load_text(SECANT.format(low=0.001), "secant.brdf")
     assert isinstance(narrow, Model)
     with pytest.raises(SelfCheckError) as caught:
-        compile_model(narrow)
+        compile_model(narrow, effort=1)  # as it is written
     message = str(caught.value)
-    assert f"limit {LIMIT}" in message
+    assert "limit 0.01" in message
     found = re.search(r"by ([0-9.e-]+) CIEDE2000 .* where incident=.* m=0.00[12]", message)
     assert found, message
     assert float(found[1]) > 0.05
@@ -275,3 +274,12 @@ def test_the_check_is_quick(ward: Compiled) -> None:
     start = time.perf_counter()
     check(ward, ward.program)
     assert time.perf_counter() - start < 1.0  # 0.1 s on an idle machine
+
+
+def test_the_search_finds_the_form_that_does_not_cancel() -> None:
+    narrow = load_text(SECANT.format(low=0.001), "secant.brdf")
+    assert isinstance(narrow, Model)
+    compiled = compile_model(narrow)
+    assert compiled.form is not None
+    assert "secant, turned" in [step.rule for step in compiled.form.derivation]
+    assert compiled.verdict.worst < 1e-3

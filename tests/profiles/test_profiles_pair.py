@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 import brdfc
-from brdfc.compiler import assign_roles
 from brdfc.icc.types import Dictionary, NumberArray, Utf8Array
 from brdfc.icc.validate import validate
 from brdfc.lang.load import load_text
 from brdfc.profiles.metadata import describe
 from brdfc.profiles.multiplex import mid_beside
+from brdfc.roles import assign_roles
 from brdfc.source.errors import BrdfcError, ValueGivenError
 
 

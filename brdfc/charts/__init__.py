@@ -1,0 +1,1 @@
+"""Pictures: what each choice costs in speed and in accuracy."""

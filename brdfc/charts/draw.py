@@ -1,0 +1,80 @@
+"""A chart of price against error, as a file of the kind its name says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from brdfc.charts.points import Point
+from brdfc.charts.table import csv_table
+from brdfc.files import write_whole
+from brdfc.source.errors import BrdfcError, MissingExtraError
+
+
+def draw(points: Sequence[Point], path: str | Path, title: str) -> None:
+    """Chart price against worst bits and worst CIEDE2000, whole or not at all.
+
+    path: its suffix says what is written: a picture (.svg, .png), a page to explore (.html) or a
+    table (.csv). The same points give the same bytes. Raises BrdfcError for another suffix or for
+    no points, MissingExtraError where matplotlib is not installed (the table does without).
+    """
+    kind = Path(path).suffix.lower()
+    if kind not in _KINDS:
+        what = f"'{kind}' is" if kind else "a name without a suffix is"
+        offered = ", ".join(_KINDS)
+        raise BrdfcError(f"{what} no kind of chart", where=str(path), hint=f"there is {offered}")
+    if not points:
+        raise BrdfcError("there is nothing to chart: no form was measured", where=str(path))
+    _refuse_twins(points)
+    write_whole(path, _KINDS[kind](points, title))
+
+
+def _refuse_twins(points: Sequence[Point]) -> None:
+    seen = set()
+    for point in points:
+        if (point.layer, point.name) in seen:
+            where = f"{point.layer}, {point.name}"
+            raise BrdfcError("two points of a chart have the same name", where=where)
+        seen.add((point.layer, point.name))
+
+
+def _svg(points: Sequence[Point], title: str) -> bytes:
+    _need_matplotlib()
+    from brdfc.charts.figure import rendered
+
+    return rendered(points, title, "svg")
+
+
+def _png(points: Sequence[Point], title: str) -> bytes:
+    _need_matplotlib()
+    from brdfc.charts.figure import rendered
+
+    return rendered(points, title, "png")
+
+
+def _html(points: Sequence[Point], title: str) -> bytes:
+    _need_matplotlib()
+    from brdfc.charts.page import page
+
+    return page(points, title)
+
+
+def _csv(points: Sequence[Point], title: str) -> bytes:
+    return csv_table(points)
+
+
+_KINDS: dict[str, Callable[[Sequence[Point], str], bytes]] = {
+    ".svg": _svg,
+    ".png": _png,
+    ".html": _html,
+    ".csv": _csv,
+}
+
+
+def _need_matplotlib() -> None:
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        message = "drawing a chart needs matplotlib, which is not installed"
+        hint = "pip install 'brdfc[plot]'; a chart named .csv needs nothing"
+        raise MissingExtraError(message, hint=hint) from None

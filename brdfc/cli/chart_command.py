@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+import click
+
+from brdfc.cli.options import pairs
+from brdfc.cli.search_options import end_progress, search_options, shown_progress
+
+
+@click.command("chart")
+@click.argument("model")
+@click.option(
+    "-o", "output", required=True, metavar="FILE", help="A .svg, .png, .html or .csv file."
+)
+@click.option("--set", "fixed", multiple=True, metavar="NAME=VALUE", help="Fix a quantity first.")
+@click.option("--channel", "channels", multiple=True, metavar="NAME", help="Take from the pixel.")
+@click.option(
+    "--layer",
+    "layers",
+    multiple=True,
+    type=click.Choice(["forms", "encodings", "storage", "engines"]),
+    help="What to chart: forms (default); encodings: calculator against tables; storage: "
+    "coefficients in fewer bits; engines: time measured here. Repeatable.",
+)
+@search_options
+def command(
+    model: str,
+    output: str,
+    fixed: tuple[str, ...],
+    channels: tuple[str, ...],
+    layers: tuple[str, ...],
+    optimize: str,
+    max_error: str | None,
+    effort: int | None,
+) -> None:
+    """Chart speed against accuracy: every equivalent form of MODEL that a search finds.
+
+    Price is the time a pixel takes on the ICC's reference engine, by the price table; error is the
+    worst over the model's domain, in bits and in CIEDE2000. The page (.html) shows each formula
+    under the pointer. The layer of encodings sets the calculator against lookup tables and sampled
+    curves; it needs every variable fixed.
+
+    \b
+    Example:
+      brdfc chart ward -o ward.svg
+      brdfc chart ward -o ward.html --effort 1000
+      brdfc chart ward -o tables.svg --layer encodings --set incident=40deg --set reflection=10deg
+    """
+    from brdfc.chartpoints import engine_points, form_points, rivals
+    from brdfc.charts.draw import draw
+    from brdfc.charts.points import front
+    from brdfc.compiler import compile_model, explore_model
+    from brdfc.lang.load import load
+
+    loaded = load(model)
+    explored = explore_model(
+        loaded,
+        pairs(fixed, "--set"),
+        channels,
+        optimize=optimize,
+        max_error=max_error,
+        effort=effort,
+        progress=shown_progress,
+    )
+    end_progress()
+    wanted = layers or ("forms",)
+    given = pairs(fixed, "--set")
+    points = form_points(explored) if "forms" in wanted else []
+    others = rivals(loaded, given, channels, explored)
+    points += others.encodings() if "encodings" in wanted else []
+    points += others.storage() if "storage" in wanted else []
+    if "engines" in wanted:
+        compiled = compile_model(
+            loaded, given, channels, optimize=optimize, max_error=max_error, effort=effort
+        )
+        points += engine_points(compiled, explored)
+    draw(points, output, f"{loaded.name}: speed against accuracy")
+    click.echo(f"{len(points)} points" + ("" if explored.finished else ", more with --effort"))
+    if explored.stopped:
+        click.echo("note: the search ran out of time; these are the best so far", err=True)
+    for error, name in (("bits", "worst bits"), ("de", "worst CIEDE2000")):
+        click.echo(f"front of price and {name}:")
+        for p in front(points, error):
+            chosen = "  <- chosen" if p.chosen else ""
+            rules = "; ".join(p.steps) or "as written"
+            click.echo(
+                f"  {p.price:6.0f} ns  {p.bits:5.2f} bits  {p.de:.1e} CIEDE2000  {rules}{chosen}"
+            )
+    click.echo(f"wrote {output}")

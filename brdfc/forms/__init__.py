@@ -1,0 +1,1 @@
+"""Equivalent forms of a formula: named rules with conditions, and the search through them."""

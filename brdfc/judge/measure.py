@@ -1,0 +1,150 @@
+"""How good a form is: its price, and its error in bits and in colour at points of every stratum."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from brdfc.calc.price import price
+from brdfc.calc.program import Program
+from brdfc.codegen.estimate import estimated_price
+from brdfc.codegen.nodes import Node
+from brdfc.codegen.select import Binding, ChannelBinding, VariableBinding
+from brdfc.colour.difference import ciede2000
+from brdfc.engine.interpreter import run
+from brdfc.judge.graphs import Graphs
+from brdfc.judge.strata import Points
+from brdfc.lang.model import Quantity
+from brdfc.symbolic.evaluate import evaluate, evaluate_precisely
+from brdfc.symbolic.expression import Expression
+from brdfc.symbolic.intervals import LARGEST
+
+SEEN = 1e-4
+"""Errors in bits count where a value is at least this share of the peak at the same coefficients;
+below that they cannot matter to anyone who can see the peak."""
+TRIED, AGREEMENT = 64, 1e-8
+"""The truth is computed in float64 where that agrees with 40 digits to a tenth of a float32's
+unit, at so many of the points; else with 40 digits at all of them."""
+FALSE_ZERO = 2.0**-100
+"""A result of 0 where the value is larger than this is a false zero."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """bits: log2(1 + units in the last place) at worst and in the mean, where values count; de:
+    worst CIEDE2000 (white: D50); price: nanoseconds a pixel; worst_at: the point of worst bits."""
+
+    bits: float
+    mean_bits: float
+    de: float
+    price: float
+    worst_at: int
+
+
+class Judge:
+    """Measures forms of one formula. truth: its exact values in high precision."""
+
+    def __init__(
+        self,
+        exact: Expression,
+        points: Points,
+        quantities: tuple[Quantity, ...],
+        bindings: Mapping[str, Binding],
+    ) -> None:
+        self.points = points
+        self.truth, self.quick = _truth(exact, points)
+        self.known = np.asarray((np.abs(self.truth) < LARGEST).all(axis=-1))
+        peaks = [evaluate(exact, at) for at in _at_peak(points, quantities)]
+        peak = np.nanmax(np.abs(np.concatenate(peaks, axis=-1)), axis=-1, initial=0.0)
+        size = np.abs(self.truth)
+        self.counted = self.known[:, None] & (size >= SEEN * np.minimum(peak, LARGEST)[:, None])
+        self.counted &= size > FALSE_ZERO
+        with np.errstate(over="ignore", invalid="ignore"):
+            self.unit = np.spacing(np.abs(self.truth).astype(np.float32)).astype(np.float64)
+        self.graphs = _graphs(points, bindings)
+
+    def measure(self, node: Node) -> Measured | None:
+        """The figures of a form's graph; None if it gives NaN, infinity or a false zero."""
+        return self.figures(self.graphs.values(node), estimated_price(node))
+
+    def measure_program(self, program: Program, channels: NDArray[np.float32]) -> Measured | None:
+        """The figures of a program on channels that stand for the points', each point with its
+        own variables."""
+        result = np.empty((len(channels), self.truth.shape[1]), dtype=np.float32)
+        names = list(self.graphs.variables)
+        runs: dict[tuple[float, ...], list[int]] = {}
+        for i in range(len(channels)):
+            key = tuple(float(self.graphs.variables[n][i]) for n in names)
+            runs.setdefault(key, []).append(i)
+        for key, which in runs.items():
+            result[which] = run(program, channels[which], dict(zip(names, key, strict=True)))
+        return self.figures(result, price(program))
+
+    def figures(self, result: NDArray[np.float32], price: float) -> Measured | None:
+        """The figures of values (points, components) that cost so much."""
+        if not np.isfinite(result).all():
+            return None
+        wide = result.astype(np.float64)
+        if (self.known[:, None] & (wide == 0) & (np.abs(self.truth) > FALSE_ZERO)).any():
+            return None
+        ulps = np.where(self.counted, np.abs(wide - self.truth) / self.unit, 0.0)
+        bits = np.log2(1 + ulps)
+        truth = np.where(self.known[:, None], self.truth, 0.0)
+        de = np.where(self.known, ciede2000(wide, truth), 0.0)
+        counted = max(int(self.counted.sum()), 1)
+        return Measured(
+            float(bits.max()),
+            float(bits.sum() / counted),
+            float(de.max()),
+            price,
+            int(bits.max(axis=-1).argmax()),
+        )
+
+
+def _truth(exact: Expression, points: Points) -> tuple[NDArray[np.float64], bool]:
+    """The values of a formula, and whether float64 was good enough for them."""
+    quick = evaluate(exact, {name: v.astype(np.float64) for name, v in points.values.items()})
+    some = range(0, points.count, max(1, points.count // TRIED))
+    truth, known = _precise(exact, points, some), quick[list(some)]
+    with np.errstate(all="ignore"):
+        near = np.abs(known - truth) <= AGREEMENT * np.abs(truth)
+    if np.all(near | ~np.isfinite(truth) | (np.abs(truth) < FALSE_ZERO)):
+        return quick, True
+    return _precise(exact, points, range(points.count)), False
+
+
+def _precise(exact: Expression, points: Points, which: range) -> NDArray[np.float64]:
+    columns = {name: values.tolist() for name, values in points.values.items()}
+    rows = [
+        evaluate_precisely(exact, {name: rows[i] for name, rows in columns.items()}) for i in which
+    ]
+    return np.array(rows, dtype=np.float64).reshape(len(which), exact.width)
+
+
+def _at_peak(
+    points: Points, quantities: tuple[Quantity, ...]
+) -> list[dict[str, NDArray[np.float64]]]:
+    """The same points with all angles equal, where a specular lobe is highest: at the point's own
+    angle, and halfway to grazing."""
+    values = {name: v.astype(np.float64) for name, v in points.values.items()}
+    angles = [q.name for q in quantities if q.type.is_angle]
+    if not angles:
+        return [values]
+    own = values[angles[0]]
+    return [{**values, **dict.fromkeys(angles, at)} for at in (own, np.full_like(own, np.pi / 4))]
+
+
+def _graphs(points: Points, bindings: Mapping[str, Binding]) -> Graphs:
+    variables = {}
+    channels: list[tuple[int, NDArray[np.float32]]] = []
+    for name, binding in bindings.items():
+        if isinstance(binding, VariableBinding):
+            variables[binding.signature] = points.values[name][:, 0]
+        else:
+            assert isinstance(binding, ChannelBinding)
+            channels.append((binding.start, points.values[name]))
+    ordered = [values for _, values in sorted(channels, key=lambda c: c[0])]
+    return Graphs(np.concatenate(ordered, axis=1), variables)
