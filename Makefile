@@ -22,6 +22,7 @@ lint: .venv/installed
 
 figures: .venv/installed
 	$(BIN)/python benchmarks/figures.py
+	$(BIN)/python benchmarks/forms.py
 
 golden: .venv/installed
 	$(BIN)/pytest --update-golden tests

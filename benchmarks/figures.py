@@ -22,6 +22,7 @@ import numpy as np
 import brdfc
 from brdfc.cmm import reference
 from brdfc.colour.difference import ciede2000
+from brdfc.lang.load import library
 from brdfc.lang.model import Quantity
 
 ANGLES = [(40, -10), (40, 0), (40, 10), (40, 30)]
@@ -72,7 +73,7 @@ def agreement(folder: Path) -> None:
     print("\nOur interpreter against the reference engine, units in the last place of the result")
     print("(2,000 pixels, 200 angle pairs, edges, peaks and grazing angles included)")
     random = np.random.default_rng(2)
-    for name in ("lambert", "ward", "ward_printed", "cook_torrance"):
+    for name in (n for n, entry in library().items() if entry.kind == "model"):
         model = brdfc.load(name)
         compiled = brdfc.compile(model)
         mid, mvis = compiled.save(folder / f"{name}_mvis.icc")
@@ -87,7 +88,7 @@ def agreement(folder: Path) -> None:
             every.append(np.abs(ours.astype(np.float64) - theirs) / unit)
         ulp = np.concatenate(every)
         exact = 100 * np.mean(ulp <= 0.5)
-        print(f"  {name:<13} maximum {ulp.max():.2f}   within half a unit: {exact:.2f} %")
+        print(f"  {name:<17} maximum {ulp.max():.2f}   within half a unit: {exact:.2f} %")
 
 
 def _draw(q: Quantity, count: int, random: np.random.Generator) -> np.ndarray:

@@ -171,12 +171,15 @@ class Worst:
         return f"{self.bits:5.1f} bits, CIEDE2000 {self.de:7.1e}{broken}"
 
 
-def worst(program_text: str, at: Sampled) -> Worst:
-    """Bits and relative error count where a value is at least SEEN of the peak."""
+def worst(program_text: str, at: Sampled, where: NDArray[np.bool_] | None = None) -> Worst:
+    """Bits and relative error count where a value is at least SEEN of the peak, and at the points
+    given, if they are."""
     result = values_of(program_text, at).astype(np.float64)
     finite = np.isfinite(result).all(axis=-1)
     size = np.abs(at.truth)
     counted = finite[:, None] & (size >= SEEN * at.peak) & (size > 2.0**-100)
+    if where is not None:
+        counted &= where[:, None]
     error = np.where(counted, np.abs(result - at.truth), 0.0)
     unit = np.spacing(size.astype(np.float32)).astype(np.float64)
     return Worst(
@@ -199,12 +202,16 @@ def accuracy() -> None:
 
 
 def ward() -> None:
-    """Ward's worst error by goal."""
-    print("\nward, worst error by goal")
+    """Ward's worst error by goal, everywhere and in the lobe: exp(-tan^2/m^2) at least SEEN."""
+    print(f"\nward, worst error by goal; in the lobe: where exp(-tan^2/m^2) >= {SEEN:g}")
     at = sampled("ward")
+    ti, tr, m = (at.points.values[n][:, 0].astype(float) for n in ("incident", "reflection", "m"))
+    lobe = np.exp(-((np.tan((ti - tr) / 2) / m) ** 2)) >= SEEN
     for goal in ("balanced", "accuracy"):
         compiled = compile_model(load("ward"), optimize=goal)
-        print(f"  {goal:<9} {operations(compiled.program):3} operators: {worst(compiled.text, at)}")
+        everywhere, inside = worst(compiled.text, at), worst(compiled.text, at, lobe)
+        count = operations(compiled.program)
+        print(f"  {goal:<9} {count:3} operators: {everywhere}; in the lobe {inside.bits:.2f} bits")
 
 
 def ggx() -> None:

@@ -21,6 +21,7 @@ from brdfc.charts.points import AS_WRITTEN, Point
 from brdfc.compiler import Compiled, prepare, problem_of
 from brdfc.encodings import Encoding, encoded
 from brdfc.engine.interpreter import run
+from brdfc.judge.bound import error_bound
 from brdfc.judge.explore import Explored, Problem
 from brdfc.judge.measure import Judge, Measured
 from brdfc.judge.strata import MANY, points
@@ -30,6 +31,7 @@ from brdfc.source.errors import BrdfcError, ValueGivenError
 from brdfc.symbolic.expression import Expression
 from brdfc.symbolic.formula import Formula
 from brdfc.symbolic.guards import guarded
+from brdfc.symbolic.ranges import Ranges
 from brdfc.symbolic.spelling import spelled
 
 TABLES = (
@@ -39,8 +41,9 @@ TABLES = (
 """The rivals of the calculator that a chart of encodings shows."""
 
 
-def form_points(explored: Explored) -> list[Point]:
-    """A point for every form that was measured and does not fail."""
+def form_points(explored: Explored, ranges: Ranges) -> list[Point]:
+    """A point for every form that was measured and does not fail, with the bound on its error
+    that interval arithmetic proves over the whole domain, where it proves one."""
     return [
         _point(
             "forms",
@@ -51,6 +54,7 @@ def form_points(explored: Explored) -> list[Point]:
             candidate.form.expression,
             tuple(step.rule for step in candidate.form.steps),
             chosen=candidate is explored.chosen,
+            bound_bits=error_bound(candidate.form.expression, Ranges(ranges.domain)),
         )
         for number, candidate in enumerate(explored.candidates)
         if candidate.works
@@ -67,6 +71,7 @@ def _point(
     steps: tuple[str, ...],
     *,
     chosen: bool = False,
+    bound_bits: float | None = None,
 ) -> Point:
     return Point(
         layer=layer,
@@ -78,7 +83,7 @@ def _point(
         operators=operators,
         formula=spelled(expression),
         steps=steps,
-        bound_bits=None,
+        bound_bits=bound_bits,
         chosen=chosen,
     )
 
@@ -129,7 +134,7 @@ class Rivals:
 
     def _program(self, how: Encoding) -> Program:
         safe, _ = guarded(self.expression, self.problem.ranges)
-        return encoded(how, self.problem, self.formula, safe)
+        return encoded(how, self.problem, safe)
 
     def _stored(self) -> list[tuple[str, NDArray[np.float32]]]:
         """The channels as a file of some sample type gives them back."""

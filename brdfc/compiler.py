@@ -12,8 +12,8 @@ from brdfc.calc.program import Program
 from brdfc.calc.text import disassemble
 from brdfc.encodings import Encoding, encoded, encoding
 from brdfc.icc.profile import Profile
-from brdfc.judge.cache import Remembered, key, recall, remember, steps_text, summary
-from brdfc.judge.examples import check_examples
+from brdfc.judge.cache import Remembered, holds, key, note, recall, remember, steps_text, summary
+from brdfc.judge.examples import check_examples, examples_digest
 from brdfc.judge.explore import Explored, Problem, default_effort, explore
 from brdfc.judge.goals import Goal, goal
 from brdfc.judge.samples import sample
@@ -25,7 +25,6 @@ from brdfc.roles import Roles, Value, assign_roles
 from brdfc.source.errors import BrdfcError, SelfCheckError, ValueGivenError
 from brdfc.symbolic.formula import Formula, formula
 from brdfc.symbolic.guards import Guard, guarded
-from brdfc.symbolic.ranges import Ranges
 
 XYZ_COMPONENTS = 3
 Progress = Callable[[int, int], None]
@@ -97,12 +96,14 @@ def compile_model(
     model.
     """
     aim, how = goal(optimize, max_error), encoding(encode)
-    roles, ready = prepare(model, set or {}, channels)
+    roles, ready = prepare(model, set or {}, channels, cache)
     problem = problem_of(roles, ready)
     form = _search(problem, aim, effort, cache, progress)
-    expression = form.expression if form else ready.simple
-    safe, guards = guarded(expression, problem.ranges)
-    program = encoded(how, problem, ready, safe)
+    if form is not None and how.kind == "calc":
+        program, guards = form.program, form.guards
+    else:
+        safe, guards = guarded(form.expression if form else ready.simple, problem.ranges)
+        program = encoded(how, problem, safe)
     samples = sample(ready.domain, roles.channels, roles.variables)
     limit = max(LIMIT, aim.limit if aim.kind == "de" else 0.0)
     try:
@@ -143,16 +144,23 @@ def explore_model(
 
 
 def prepare(
-    model: Model, set: Mapping[str, Value], channels: Iterable[str]
+    model: Model, set: Mapping[str, Value], channels: Iterable[str], cache: bool = False
 ) -> tuple[Roles, Formula]:
-    """The roles of the quantities, and the formula with its constants in, examples checked."""
+    """The roles of the quantities, and the formula with its constants in, examples checked.
+
+    cache: examples that held before, of the same formula, are not evaluated again.
+    """
     roles = assign_roles(model, set, channels)
     if not roles.channels:
         raise ValueGivenError(
             "no channel is left: a profile needs one value a pixel at least",
             hint="leave one quantity out of --set",
         )
-    check_examples(model)
+    name = examples_digest(model)
+    if not (cache and holds(name)):
+        check_examples(model)
+        if cache:
+            note(name)
     ready = formula(model, roles.constants)
     if ready.width != XYZ_COMPONENTS:
         raise BrdfcError(
@@ -166,27 +174,21 @@ def prepare(
 def problem_of(roles: Roles, ready: Formula) -> Problem:
     """What a search for forms needs to know."""
     return Problem(
-        ready.exact,
-        ready.simple,
-        Ranges(ready.domain),
-        roles.channels + roles.variables,
-        roles.bindings(),
-        len(roles.channel_names),
+        ready, roles.channels + roles.variables, roles.bindings(), len(roles.channel_names)
     )
 
 
 def _search(
     problem: Problem, aim: Goal, effort: int | None, cache: bool, progress: Progress
 ) -> Remembered | None:
-    effort = effort or default_effort(problem)
     name = key(problem, aim, effort)
-    known = recall(name) if cache else None
+    known = recall(name, problem) if cache else None
     if known is not None:
         return known
-    explored = explore(problem, aim, effort, progress)
+    explored = explore(problem, aim, effort or default_effort(problem), progress)
     if explored is None:
         return None
-    found = summary(explored)
+    found = summary(problem, explored)
     if cache and not explored.stopped:
         remember(name, found)
     return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from brdfc.calc.program import Program
 from brdfc.codegen.schedule import schedule
@@ -13,7 +13,6 @@ from brdfc.judge.explore import Problem
 from brdfc.source.diagnostics import did_you_mean
 from brdfc.source.errors import ValueGivenError
 from brdfc.symbolic.expression import Expression
-from brdfc.symbolic.formula import Formula
 
 
 @dataclass(frozen=True)
@@ -40,9 +39,9 @@ def encoding(text: str) -> Encoding:
     return Encoding() if found[1] else Encoding(found[2], int(found[3]))
 
 
-def encoded(how: Encoding, problem: Problem, formula: Formula, safe: Expression) -> Program:
-    """The program of a formula. safe: the form to compile, guarded."""
+def encoded(how: Encoding, problem: Problem, safe: Expression) -> Program:
+    """The program of a form, guarded."""
     if how.kind == "calc":
         return schedule(select(safe, problem.bindings), problem.inputs)
     make = clut_program if how.kind == "clut" else curve_program
-    return make(replace(formula, prepared=safe), problem.bindings, how.points)
+    return make(safe, problem.ranges.domain, problem.bindings, how.points)

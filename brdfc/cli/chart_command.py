@@ -64,8 +64,8 @@ def command(
     end_progress()
     wanted = layers or ("forms",)
     given = pairs(fixed, "--set")
-    points = form_points(explored) if "forms" in wanted else []
     others = rivals(loaded, given, channels, explored)
+    points = form_points(explored, others.problem.ranges) if "forms" in wanted else []
     points += others.encodings() if "encodings" in wanted else []
     points += others.storage() if "storage" in wanted else []
     if "engines" in wanted:

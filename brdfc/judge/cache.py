@@ -16,7 +16,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from brdfc import __version__
+from brdfc.calc.binary import decode_element, encode_element
 from brdfc.calc.prices import prices
+from brdfc.calc.program import Program
 from brdfc.files import read_file, write_whole
 from brdfc.forms.rules import RULES
 from brdfc.judge.explore import Explored, Problem
@@ -24,6 +26,8 @@ from brdfc.judge.goals import Goal
 from brdfc.judge.measure import Measured
 from brdfc.source.errors import BrdfcError
 from brdfc.symbolic.expression import Expression, walk
+from brdfc.symbolic.guards import Guard, guarded
+from brdfc.symbolic.ranges import Ranges
 from brdfc.symbolic.serial import from_data, to_data
 
 _LIMIT = 1 << 20
@@ -43,18 +47,24 @@ class Derived:
 
 @dataclass(frozen=True)
 class Remembered:
-    """The chosen form, its derivation (rule, price and figures of each step, the formula as
-    written first), how many forms did not fail, and whether the search came to its end."""
+    """The chosen form, the calculator program it became and the guards that took, its derivation
+    (rule, price and figures of each step, the formula as written first), how many forms were
+    measured, and whether the search came to its end."""
 
     expression: Expression
+    program: Program
+    guards: tuple[Guard, ...]
     derivation: tuple[Derived, ...]
     forms: int
     finished: bool
     points: int
 
 
-def summary(explored: Explored) -> Remembered:
+def summary(problem: Problem, explored: Explored) -> Remembered:
     """What of a search is worth keeping."""
+    chosen = explored.chosen
+    assert chosen.program is not None
+    guards = guarded(chosen.form.expression, Ranges(problem.ranges.domain))[1]
     derivation = tuple(
         Derived(
             c.form.step.rule if c.form.step else "",
@@ -66,7 +76,9 @@ def summary(explored: Explored) -> Remembered:
         for c in explored.derivation()
     )
     return Remembered(
-        explored.chosen.form.expression,
+        chosen.form.expression,
+        chosen.program,
+        guards,
         derivation,
         len(explored.candidates),
         explored.finished,
@@ -74,8 +86,8 @@ def summary(explored: Explored) -> Remembered:
     )
 
 
-def key(problem: Problem, goal: Goal, effort: int) -> str:
-    """A digest of all that a search depends on."""
+def key(problem: Problem, goal: Goal, effort: int | None) -> str:
+    """A digest of all that a search depends on; effort is None for the default."""
     domain = [[name, i.low, i.high] for name, i in problem.ranges.domain.items()]
     quantities = [[q.name, q.type.name] for q in problem.quantities]
     table = prices()
@@ -84,7 +96,7 @@ def key(problem: Problem, goal: Goal, effort: int) -> str:
     bindings = [[name, repr(b)] for name, b in problem.bindings.items()]
     content = {
         "version": [__version__, rules],
-        "formula": [to_data(problem.exact), to_data(problem.start)],
+        "formula": to_data(problem.exact),
         "domain": [domain, quantities, bindings],
         "aim": [goal.kind, goal.limit, effort, table.dispatch, costs],
     }
@@ -97,18 +109,18 @@ def folder() -> Path:
     return Path(base) / "brdfc" / "forms"
 
 
-def recall(name: str, problem: Problem | None = None) -> Remembered | None:
-    """What was found under a key, or None; for a problem, only a form of its quantities."""
+def recall(name: str, problem: Problem) -> Remembered | None:
+    """What was found under a problem's key, or None where that is not a form of its quantities."""
     try:
         found = _remembered(json.loads(read_file(folder() / f"{name}.json", _LIMIT)))
     # RuntimeError: no home folder, or brackets nested without end.
     except (BrdfcError, ValueError, LookupError, TypeError, RuntimeError):
         return None
-    if problem is not None:
-        known = {(q.name, q.type.value.width) for q in problem.quantities}
-        used = {(e.name, e.width) for e in walk(found.expression) if e.operator == "quantity"}
-        if not used <= known or found.expression.width != problem.exact.width:
-            return None
+    known = {(q.name, q.type.value.width) for q in problem.quantities}
+    used = {(e.name, e.width) for e in walk(found.expression) if e.operator == "quantity"}
+    fits = (found.program.inputs, found.program.outputs) == (problem.inputs, problem.exact.width)
+    if not used <= known or found.expression.width != problem.exact.width or not fits:
+        return None
     return found
 
 
@@ -117,11 +129,18 @@ def _remembered(data: Any) -> Remembered:
     derivation = tuple(_derived(d) for d in data["derivation"])
     return Remembered(
         from_data(data["expression"]),
+        _program(data["program"]),
+        tuple(Guard(_a(str, o), _a(str, r)) for o, r in data["guards"]),
         (derivation[0], *derivation[1:]),  # never empty
         _a(int, data["forms"]),
         _a(bool, data["finished"]),
         _a(int, data["points"]),
     )
+
+
+def _program(text: Any) -> Program:
+    element = decode_element(bytes.fromhex(_a(str, text)), "remembered program")
+    return _a(Program, element)
 
 
 def _derived(data: Any) -> Derived:
@@ -145,6 +164,8 @@ def remember(name: str, found: Remembered) -> None:
     """Keep what a search found."""
     data = {
         "expression": to_data(found.expression),
+        "program": encode_element(found.program).hex(),
+        "guards": [[g.operation, g.reason] for g in found.guards],
         "derivation": [asdict(d) for d in found.derivation],
         "forms": found.forms,
         "finished": found.finished,
@@ -153,6 +174,21 @@ def remember(name: str, found: Remembered) -> None:
     with suppress(OSError, BrdfcError, RuntimeError):
         folder().mkdir(parents=True, exist_ok=True)
         write_whole(folder() / f"{name}.json", json.dumps(data).encode())
+
+
+def holds(name: str) -> bool:
+    """Whether something, by its digest, is remembered to be true."""
+    try:
+        return (folder() / f"{name}.true").exists()
+    except (OSError, RuntimeError):  # no home folder, or none that may be read
+        return False
+
+
+def note(name: str) -> None:
+    """Remember that something, by its digest, is true."""
+    with suppress(OSError, BrdfcError, RuntimeError):
+        folder().mkdir(parents=True, exist_ok=True)
+        write_whole(folder() / f"{name}.true", b"")
 
 
 def steps_text(derivation: Sequence[Derived]) -> str:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
 
+from brdfc import __version__
 from brdfc.lang.model import Example, Model
 from brdfc.source.diagnostics import Diagnostic
 from brdfc.source.errors import ModelError
 from brdfc.symbolic.build import build
 from brdfc.symbolic.constants import fold_constants
 from brdfc.symbolic.evaluate import evaluate_precisely
+from brdfc.symbolic.serial import to_data
 
 
 def check_examples(model: Model) -> int:
@@ -23,10 +27,17 @@ def check_examples(model: Model) -> int:
     return len(model.examples)
 
 
+def examples_digest(model: Model) -> str:
+    """A digest of all that the outcome of check_examples depends on."""
+    content = [
+        [to_data(build(model.radiance, e.given)), list(e.result), e.within] for e in model.examples
+    ]
+    return hashlib.sha256(json.dumps([__version__, content]).encode()).hexdigest()
+
+
 def _finding(model: Model, example: Example) -> Diagnostic | None:
-    values = {q.name: example.given.get(q.name, q.default) for q in model.quantities}
     # Exactly first: 90deg is a right angle here, not the float nearest to one.
-    result = evaluate_precisely(fold_constants(build(model.radiance, values)), {})
+    result = evaluate_precisely(fold_constants(build(model.radiance, example.given)), {})
     wanted = example.result * len(result) if len(example.result) == 1 else example.result
     pairs = list(zip(result, wanted, strict=True))
     if all(math.isclose(a, b, rel_tol=example.within, abs_tol=1e-300) for a, b in pairs):

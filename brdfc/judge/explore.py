@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import count
 
 from brdfc.calc.price import price
@@ -19,6 +20,7 @@ from brdfc.judge.measure import Judge, Measured
 from brdfc.judge.strata import FEW, MANY, Points, points
 from brdfc.lang.model import Quantity
 from brdfc.symbolic.expression import Expression, walk
+from brdfc.symbolic.formula import Formula
 from brdfc.symbolic.guards import guarded
 from brdfc.symbolic.ranges import Ranges
 from brdfc.symbolic.sympy_forms import proposals
@@ -42,14 +44,26 @@ SAME_PRICE = 0.02
 
 @dataclass(frozen=True)
 class Problem:
-    """What is to be compiled: the exact formula, the form to start from, and its surroundings."""
+    """What is to be compiled, and its surroundings."""
 
-    exact: Expression
-    start: Expression
-    ranges: Ranges
+    formula: Formula
     quantities: tuple[Quantity, ...]
     bindings: Mapping[str, Binding]
     inputs: int
+
+    @property
+    def exact(self) -> Expression:
+        """The formula as the model writes it."""
+        return self.formula.exact
+
+    @property
+    def start(self) -> Expression:
+        """The form a search starts from."""
+        return self.formula.simple
+
+    @cached_property
+    def ranges(self) -> Ranges:
+        return Ranges(self.formula.domain)
 
 
 @dataclass(frozen=True)

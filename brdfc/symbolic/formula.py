@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from brdfc.lang.model import Model
 from brdfc.symbolic.build import build
@@ -20,15 +21,23 @@ from brdfc.symbolic.simplify import simplified
 @dataclass(frozen=True)
 class Formula:
     """exact: the radiance as the model writes it, every function inlined, constants put in; the
-    truth a program is judged by. simple: the same function, simplified by its ranges; equivalent
-    forms start from it. prepared: the same, guarded where its domain reaches a break. domain: the
-    ranges of the quantities left in it."""
+    truth a program is judged by. domain: the ranges of the quantities left in it.
+
+    The rest is made when it is asked for, as SymPy takes its time: simple, the same function
+    simplified by its ranges, which equivalent forms start from; and prepared, that one guarded
+    where its domain reaches a break.
+    """
 
     exact: Expression
-    simple: Expression
-    prepared: Expression
     domain: Mapping[str, Interval]
-    guards: tuple[Guard, ...]
+
+    @cached_property
+    def simple(self) -> Expression:
+        return simplest(self.exact, self.domain)
+
+    @cached_property
+    def prepared(self) -> Expression:
+        return fold_constants(guarded(self.simple, Ranges(self.domain))[0])
 
     @property
     def width(self) -> int:
@@ -41,11 +50,8 @@ def formula(model: Model, values: Mapping[str, tuple[float, ...]]) -> Formula:
 
     values: one number a component (angles in radians) for what is fixed at compile time.
     """
-    exact = build(model.radiance, values)
     left = domain(tuple(q for q in model.quantities if q.name not in values))
-    simple = simplest(exact, left)
-    safe, guards = guarded(simple, Ranges(left))
-    return Formula(exact, simple, fold_constants(safe), left, guards)
+    return Formula(build(model.radiance, values), left)
 
 
 def simplest(exact: Expression, domain: Mapping[str, Interval]) -> Expression:

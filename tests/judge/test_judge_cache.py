@@ -11,18 +11,22 @@ from typing import Any
 import pytest
 
 from brdfc.calc import prices as price_table
+from brdfc.calc.binary import encode_element
+from brdfc.calc.program import Program
+from brdfc.calc.text import assemble
 from brdfc.compiler import compile_model, prepare, problem_of
 from brdfc.judge import cache
-from brdfc.judge.cache import folder, key, recall, remember, summary
+from brdfc.judge.cache import folder, holds, key, recall, remember, summary
 from brdfc.judge.explore import Problem, explore
 from brdfc.judge.goals import GOALS, Goal
 from brdfc.lang.load import load
 from brdfc.symbolic.expression import make, quantity, vector
+from brdfc.symbolic.formula import Formula
 from brdfc.symbolic.intervals import Interval
-from brdfc.symbolic.ranges import Ranges
 from brdfc.symbolic.serial import to_data
 
 AIM = GOALS["balanced"]
+OTHER = encode_element(Program(1, 3, assemble("{ in copy(1,2) out[0,3] }"))).hex()
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +38,7 @@ def ward() -> Problem:
 def found(ward: Problem) -> cache.Remembered:
     explored = explore(ward, AIM, 20)
     assert explored is not None
-    return summary(explored)
+    return summary(ward, explored)
 
 
 @pytest.fixture(autouse=True)
@@ -70,10 +74,10 @@ def entry() -> Path:
     ],
     ids=["empty", "cut", "null", "list", "object", "binary", "deep", "no derivation", "large"],
 )
-def test_a_broken_file_counts_as_none(text: bytes) -> None:
+def test_a_broken_file_counts_as_none(ward: Problem, text: bytes) -> None:
     entry().parent.mkdir(parents=True)
     entry().write_bytes(text)
-    assert recall("entry") is None
+    assert recall("entry", ward) is None
 
 
 def chain(data: dict[str, Any], levels: int) -> None:
@@ -103,6 +107,10 @@ HOSTILE: dict[str, Callable[[dict[str, Any]], None]] = {
     "text for a number": lambda data: data.update(forms="many"),
     "text for a price": lambda data: data["derivation"][0].update(price="cheap"),
     "a list for a rule": lambda data: data["derivation"][0].update(rule=["a"]),
+    "no program": lambda data: data.update(program="xyz"),
+    "a broken program": lambda data: data.update(program=data["program"][:-16]),
+    "another program": lambda data: data.update(program=OTHER),
+    "guards that are none": lambda data: data.update(guards=[["a", 1]]),
     "no figures": lambda data: data["derivation"][0].update(measured={}),
 }
 
@@ -117,17 +125,17 @@ def test_a_hostile_file_counts_as_none(ward: Problem, found: cache.Remembered, n
 
 
 def test_a_folder_that_cannot_be_written_is_no_error(
-    found: cache.Remembered, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ward: Problem, found: cache.Remembered, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "file").write_text("in the way")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     remember("entry", found)
-    assert recall("entry") is None
+    assert recall("entry", ward) is None
     assert compile_model(load("lambert")).form is not None
 
 
 def test_no_home_folder_is_no_error(
-    found: cache.Remembered, monkeypatch: pytest.MonkeyPatch
+    ward: Problem, found: cache.Remembered, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def homeless() -> Path:
         raise RuntimeError("Could not determine home directory.")
@@ -135,7 +143,8 @@ def test_no_home_folder_is_no_error(
     monkeypatch.delenv("XDG_CACHE_HOME")
     monkeypatch.setattr(Path, "home", homeless)
     remember("entry", found)
-    assert recall("entry") is None
+    assert recall("entry", ward) is None
+    assert not holds("entry")
 
 
 def test_the_key_changes_with_whatever_a_search_depends_on(
@@ -145,11 +154,11 @@ def test_the_key_changes_with_whatever_a_search_depends_on(
     assert key(ward, AIM, 20) == keys[0]
     other = vector([make("sin", quantity("ks", 1))] * 3)
     assert to_data(other) != to_data(ward.exact)
-    narrow = Ranges({**ward.ranges.domain, "m": Interval(0.1, 1.0)})
+    domain = ward.formula.domain
+    narrow = {**domain, "m": Interval(0.1, 1.0)}
     keys += [
-        key(replace(ward, exact=other), AIM, 20),
-        key(replace(ward, start=other), AIM, 20),
-        key(replace(ward, ranges=narrow), AIM, 20),
+        key(replace(ward, formula=Formula(other, domain)), AIM, 20),
+        key(replace(ward, formula=Formula(ward.exact, narrow)), AIM, 20),
         key(replace(ward, quantities=ward.quantities[::-1]), AIM, 20),
         key(ward, GOALS["speed"], 20),
         key(ward, Goal("ulp", 8.0), 20),
