@@ -4,16 +4,13 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: demo test test-long lint figures golden clean
+.PHONY: demo test lint figures golden clean
 
 demo: .venv/installed
 	$(BIN)/python examples/demo.py
 
 test: lint
-	$(BIN)/pytest -m "not long"
-
-test-long: .venv/installed
-	$(BIN)/pytest -m long
+	$(BIN)/pytest
 
 lint: .venv/installed
 	$(BIN)/ruff check .

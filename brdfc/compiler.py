@@ -8,6 +8,7 @@ from pathlib import Path
 
 from brdfc import __version__
 from brdfc.calc.price import operations, price
+from brdfc.calc.prices import prices_in_use
 from brdfc.calc.program import Program
 from brdfc.calc.text import disassemble
 from brdfc.encodings import Encoding, encoded, encoding
@@ -212,6 +213,9 @@ def _profiles(
         "encoding": str(how),
         "compiler": f"brdfc {__version__}",
     }
+    table = prices_in_use()
+    if table is not None:  # another table may choose another form, so the profile says so
+        facts["prices"] = f"not the shipped table: {table.name}"
     if form is not None:
         last = form.derivation[-1].measured
         facts["form"] = steps_text(form.derivation)

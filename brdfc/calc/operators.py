@@ -79,13 +79,6 @@ class Operator:
         """The four bytes in a file."""
         return self.name.ljust(4).encode("ascii")
 
-    @property
-    def price(self) -> float:
-        """Nanoseconds one execution takes on the reference engine beyond a dispatch."""
-        from brdfc.calc.prices import prices
-
-        return prices().operators[self.name].first
-
 
 def _rows() -> Iterable[Operator]:
     none, vector, fold, span = Operand.NONE, Operand.VECTOR, Operand.FOLD, Operand.SPAN
@@ -226,12 +219,3 @@ BY_SIGNATURE: dict[bytes, Operator] = {o.signature: o for o in OPERATORS.values(
 
 # Control flow is not an operator of the table: it has blocks in the text and jump lengths in files.
 IF, ELSE, SELECT, CASE, DEFAULT = b"if  ", b"else", b"sel ", b"case", b"dflt"
-
-
-def __getattr__(name: str) -> float:
-    """DISPATCH: nanoseconds the reference engine takes for any operator, by the table in use."""
-    if name == "DISPATCH":
-        from brdfc.calc.prices import prices
-
-        return prices().dispatch
-    raise AttributeError(name)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from brdfc.calc.operators import DISPATCH, OPERATORS
+from brdfc.calc.prices import prices
 from brdfc.codegen.nodes import Node, postorder
 
 
@@ -13,16 +13,18 @@ def estimated_price(result: Node) -> float:
     again one operator to keep it and one each time to fetch it."""
     nodes = postorder(result)
     uses = Counter(argument for node in nodes for argument in node.arguments)
-    total = DISPATCH  # the output
+    table = prices()
+    dispatch = table.dispatch
+    total = dispatch  # the output
     for node in nodes:
         again = max(uses[node] - 1, 0)
         if node.operator == "vector":
             continue
-        total += DISPATCH * (again + (again > 0 and not node.cheap))
+        total += dispatch * (again + (again > 0 and not node.cheap))
         if node.operator == "env":
-            total += DISPATCH * (3 if node.value else 2)
+            total += dispatch * (3 if node.value else 2)
         elif node.operator == "where":
-            total += DISPATCH * 2
+            total += dispatch * 2
         else:
-            total += DISPATCH + OPERATORS[node.operator].price
+            total += dispatch + table.operators[node.operator].first
     return total

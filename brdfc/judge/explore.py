@@ -37,6 +37,8 @@ PATIENCE = 60.0
 _FINALISTS = 8
 SCHEDULED = 400
 """Operators of all finalists of a kind together: scheduling takes longer than measuring."""
+_HOPELESS = 1.04
+"""A form whose corrected estimate is beyond the best price by this factor is not scheduled."""
 _SAME_BITS = 0.1
 SAME_PRICE = 0.02
 """Prices so near each other are the same: the price table is not more exact than that."""
@@ -251,7 +253,15 @@ def _finals(
     every = list(candidates.values())
     working = [c for c in every if c.works]
     good = [c for c in working if goal.accepts(c.measured)]
-    finals = judged([every[0], *sorted(good, key=_merit)[:few]])
+    finals = judged([every[0]])
+    best, off = math.inf, 1.0  # the cheapest so far, and how far its estimate was off
+    for c in sorted(good, key=_merit)[:few]:
+        if c.price * off > best * _HOPELESS:
+            break
+        for final in judged([c]):
+            finals.append(final)
+            if goal.accepts(final.measured) and final.price < best:
+                best, off = final.price, final.price / c.price
     if goal.kind == "best" or not any(goal.accepts(c.measured) for c in finals):
         working.sort(key=lambda c: (round(c.measured.mean_bits, 2), *_merit(c)))
         finals += judged([candidates[c.form.expression] for c in working[:few]])

@@ -55,7 +55,8 @@ def in_own_unit(value: Fraction, unit: str, declared: DeclaredType) -> float:
             return float(value) * math.pi / 180
         if unit == "rad":
             return float(value)
-        raise BadValue("an angle needs its unit", f"write {shown}deg or {shown}rad")
+        radians = f" or {shown}rad" if abs(value) <= 7 else ""  # nobody writes 45 radians
+        raise BadValue("an angle needs its unit", f"write {shown}deg{radians}")
     if unit:
         raise BadValue(f"a value of type {declared.name} has no unit", f"write {shown}")
     return float(value)

@@ -120,7 +120,7 @@ def test_a_value_for_a_spectrum() -> None:
 @pytest.mark.parametrize(
     ("text", "type_", "said"),
     [
-        ("40", "angle", "an angle needs its unit\nhint: write 40deg or 40rad"),
+        ("40", "angle", "an angle needs its unit\nhint: write 40deg"),
         ("0", "angle", "an angle needs its unit"),
         ("4nm", "angle", "an angle needs its unit"),
         ("4deg", "number", "a value of type number has no unit\nhint: write 4"),
