@@ -243,10 +243,10 @@ def _finals(
     most accurate."""
 
     def judged(chosen: list[Candidate]) -> list[Candidate]:
-        for c in chosen:
-            if c.program is None and c.works:
-                expression = c.form.expression
-                candidates[expression] = _judged(problem, strict, c.form, scheduled=True)
+        for expression in (c.form.expression for c in chosen):
+            known = candidates[expression]
+            if known.program is None and known.works:
+                candidates[expression] = _judged(problem, strict, known.form, scheduled=True)
         finals = (candidates[c.form.expression] for c in chosen)
         return [c for c in finals if c.works]
 
