@@ -18,15 +18,24 @@ def draw(points: Sequence[Point], path: str | Path, title: str) -> None:
     table (.csv). The same points give the same bytes. Raises BrdfcError for another suffix or for
     no points, MissingExtraError where matplotlib is not installed (the table does without).
     """
+    kind = chart_kind(path)
+    if not points:
+        raise BrdfcError("there is nothing to chart: no form was measured", where=str(path))
+    _refuse_twins(points)
+    write_whole(path, _KINDS[kind](points, title))
+
+
+def chart_kind(path: str | Path) -> str:
+    """The suffix of a chart's name, once it is sure that such a chart can be drawn; BrdfcError
+    where it cannot. Commands ask before they search."""
     kind = Path(path).suffix.lower()
     if kind not in _KINDS:
         what = f"'{kind}' is" if kind else "a name without a suffix is"
         offered = ", ".join(_KINDS)
         raise BrdfcError(f"{what} no kind of chart", where=str(path), hint=f"there is {offered}")
-    if not points:
-        raise BrdfcError("there is nothing to chart: no form was measured", where=str(path))
-    _refuse_twins(points)
-    write_whole(path, _KINDS[kind](points, title))
+    if kind != ".csv":
+        _need_matplotlib()
+    return kind
 
 
 def _refuse_twins(points: Sequence[Point]) -> None:
@@ -39,21 +48,18 @@ def _refuse_twins(points: Sequence[Point]) -> None:
 
 
 def _svg(points: Sequence[Point], title: str) -> bytes:
-    _need_matplotlib()
     from brdfc.charts.figure import rendered
 
     return rendered(points, title, "svg")
 
 
 def _png(points: Sequence[Point], title: str) -> bytes:
-    _need_matplotlib()
     from brdfc.charts.figure import rendered
 
     return rendered(points, title, "png")
 
 
 def _html(points: Sequence[Point], title: str) -> bytes:
-    _need_matplotlib()
     from brdfc.charts.page import page
 
     return page(points, title)

@@ -46,15 +46,16 @@ def command(
       brdfc chart ward -o tables.svg --layer encodings --set incident=40deg --set reflection=10deg
     """
     from brdfc.chartpoints import engine_points, form_points, rivals
-    from brdfc.charts.draw import draw
+    from brdfc.charts.draw import chart_kind, draw
     from brdfc.charts.points import front
     from brdfc.compiler import compile_model, explore_model
     from brdfc.lang.load import load
 
-    loaded = load(model)
+    chart_kind(output)  # a chart that cannot be drawn is refused before the search
+    loaded, given = load(model), pairs(fixed, "--set")
     explored = explore_model(
         loaded,
-        pairs(fixed, "--set"),
+        given,
         channels,
         optimize=optimize,
         max_error=max_error,
@@ -63,7 +64,6 @@ def command(
     )
     end_progress()
     wanted = layers or ("forms",)
-    given = pairs(fixed, "--set")
     others = rivals(loaded, given, channels, explored)
     points = form_points(explored, others.problem.ranges) if "forms" in wanted else []
     points += others.encodings() if "encodings" in wanted else []

@@ -12,7 +12,6 @@ from typing import Any
 
 from brdfc.symbolic.expression import PI, Expression, const, make, quantity, walk
 
-_OPAQUE = ("where", "vector", "component", "lt", "le", "gt", "ge", "eq", "ne", "and", "or", "not")
 _FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "sqrt")
 _ARITHMETIC = ("const", "pi", "quantity", "add", "sub", "mul", "div", "neg", "pow", "ln")
 LARGEST = 60

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import tifffile
+from cli_process import run
 
 import brdfc
 
@@ -27,18 +28,6 @@ radiance = cos(incident)*Rd/pi + g*radians(abs(incident))
 
 example incident=0deg Rd=1 g=1 -> (0.318309886, 0.318309886, 0.318309886) within 1e-8
 """
-
-
-def run(*arguments: str | Path, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    """The installed program's own entry, in a process of its own."""
-    code = "from brdfc.cli.main import main; main()"
-    return subprocess.run(
-        [sys.executable, "-c", code, *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        cwd=cwd,
-        timeout=120,
-    )
 
 
 @pytest.fixture(scope="module")

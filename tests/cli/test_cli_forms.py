@@ -3,26 +3,14 @@
 from __future__ import annotations
 
 import csv
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from cli_process import run
 
 import brdfc
 
 ANGLES = ["--set", "incident=40deg", "--set", "reflection=10deg"]
-
-
-def run(*arguments: str | Path, cwd: Path) -> subprocess.CompletedProcess[str]:
-    code = "from brdfc.cli.main import main; main()"
-    return subprocess.run(
-        [sys.executable, "-c", code, *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        cwd=cwd,
-        timeout=120,
-    )
 
 
 def test_explain_shows_every_step_with_figures_before_and_after(tmp_path: Path) -> None:
