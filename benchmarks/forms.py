@@ -10,6 +10,7 @@ speed     operators, and nanoseconds a pixel on the reference engine, all progra
 accuracy  worst error of literal and compiled at the same points, angles within 89.9 degrees
 ward      worst error of ward, --optimize balanced and accuracy
 ggx       worst relative error of ggx where alpha = 0.001
+splits    forms that differ by regime: time averaged over angles and pixels of the whole domain
 """
 
 from __future__ import annotations
@@ -25,12 +26,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfc.calc.price import operations
+from brdfc.calc.price import fixed, operations
 from brdfc.calc.program import Program
 from brdfc.calc.text import assemble
 from brdfc.cmm import reference
 from brdfc.colour.difference import ciede2000
-from brdfc.compiler import compile_model, prepare
+from brdfc.compiler import compile_model, explore_model, prepare
 from brdfc.engine.interpreter import run
 from brdfc.icc.types import Dictionary
 from brdfc.judge.measure import SEEN
@@ -224,8 +225,40 @@ def ggx() -> None:
     print(f"  compiled {worst(compile_model(load('ggx')).text, at).relative:.1e}")
 
 
+def splits() -> None:
+    """Ward where accuracy is asked for: the careful form everywhere, and only where it is needed.
+    The price is one of pixels spread over the domain, so time is averaged over such."""
+    random = np.random.default_rng(2)
+    model = load("ward")
+    roles, _ = prepare(model, {}, ())
+    columns = []
+    for q in roles.channels:
+        drawn = random.uniform(size=(PIXELS, q.type.value.width))
+        decades = q.low > 0 and q.high / q.low > 30
+        columns.append(
+            q.low * (q.high / q.low) ** drawn if decades else q.low + drawn * (q.high - q.low)
+        )
+    pixels = np.concatenate(columns, axis=1).astype(np.float32)
+    angles = random.uniform(-math.pi / 2, math.pi / 2, (100, 2))
+    runs = [{"inci": float(a), "refl": float(b)} for a, b in angles]
+    print("\nward, the same error with and without a split by regime; spread over the domain")
+    explored = explore_model(model, optimize="accuracy")
+    steps = [c for c in explored.derivation() if c.program is not None]
+    for c, what in ((steps[-2], "careful everywhere"), (steps[-1], "split")):
+        with tempfile.TemporaryDirectory() as folder:
+            names = roles.channel_names
+            pair = profile_pair("timed", c.program, names, [0.0] * len(names), Dictionary(()))
+            mid, mvis = pair.save(Path(folder) / "timed_mvis.icc")
+            done = [reference.apply(mid, mvis, pixels, runs) for _ in range(ROUNDS)]
+        took = min(float(d.seconds.mean()) for d in done) / PIXELS * 1e9
+        expected = fixed() + c.price
+        print(
+            f"  {what:<19} {c.measured.bits:.2f} bits, {took:4.0f} ns, by its price {expected:4.0f}"
+        )
+
+
 def main() -> None:
-    parts = {"speed": speed, "accuracy": accuracy, "ward": ward, "ggx": ggx}
+    parts = {"speed": speed, "accuracy": accuracy, "ward": ward, "ggx": ggx, "splits": splits}
     for part in sys.argv[1:] or parts:
         parts[part]()
 

@@ -22,8 +22,9 @@ from brdfc.compiler import Compiled, prepare, problem_of
 from brdfc.encodings import Encoding, encoded
 from brdfc.engine.interpreter import run
 from brdfc.judge.bound import error_bound
-from brdfc.judge.explore import Explored, Problem
+from brdfc.judge.explore import Explored
 from brdfc.judge.measure import Judge, Measured
+from brdfc.judge.problem import Problem
 from brdfc.judge.strata import MANY, points
 from brdfc.lang.model import Model
 from brdfc.roles import Roles, Value

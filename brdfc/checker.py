@@ -114,7 +114,7 @@ def _program(program: Program, where: str) -> Iterator[Finding]:
         return
     yield Finding(
         OK,
-        f"{where}: proven safe; {operations(program)} operators, about "
+        f"{where}: proven safe; {operations(program)} operators, at most "
         f"{price(program):.0f} ns a pixel, stack {facts.stack}, temporaries "
         f"{facts.temporaries}, variables {' '.join(facts.variables) or 'none'}",
     )

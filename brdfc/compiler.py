@@ -15,8 +15,9 @@ from brdfc.encodings import Encoding, encoded, encoding
 from brdfc.icc.profile import Profile
 from brdfc.judge.cache import Remembered, holds, key, note, recall, remember, steps_text, summary
 from brdfc.judge.examples import check_examples, examples_digest
-from brdfc.judge.explore import Explored, Problem, default_effort, explore
+from brdfc.judge.explore import Explored, explore
 from brdfc.judge.goals import Goal, goal
+from brdfc.judge.problem import Problem
 from brdfc.judge.samples import sample
 from brdfc.judge.selfcheck import LIMIT, Verdict, self_check
 from brdfc.lang.model import Model
@@ -40,7 +41,8 @@ class Compiled:
     """A compiled model: its profiles, and everything worth knowing of how they came about.
 
     form: the form that was chosen and how it was derived; None where every form failed to be
-    measured, and the formula stands as written. guards: what its domain made necessary.
+    measured, and the formula stands as written. guards: what its domain made necessary. price:
+    nanoseconds a pixel on the reference engine, by the price table.
     """
 
     model: Model
@@ -50,6 +52,7 @@ class Compiled:
     form: Remembered | None
     guards: tuple[Guard, ...]
     program: Program
+    price: float
     verdict: Verdict
     pair: ProfilePair
 
@@ -102,9 +105,11 @@ def compile_model(
     form = _search(problem, aim, effort, cache, progress)
     if form is not None and how.kind == "calc":
         program, guards = form.program, form.guards
+        cost = form.derivation[-1].price
     else:
         safe, guards = guarded(form.expression if form else ready.simple, problem.ranges)
         program = encoded(how, problem, safe)
+        cost = price(program)
     samples = sample(ready.domain, roles.channels, roles.variables)
     limit = max(LIMIT, aim.limit if aim.kind == "de" else 0.0)
     try:
@@ -114,8 +119,8 @@ def compile_model(
             raise
         hint = "take more points, or allow more with --max-error 0.1dE"
         raise SelfCheckError(error.message, hint=hint) from None
-    pair = _profiles(model, roles, program, verdict, form, limit, how)
-    return Compiled(model, roles, ready, aim, form, guards, program, verdict, pair)
+    pair = _profiles(model, roles, program, cost, verdict, form, limit, how)
+    return Compiled(model, roles, ready, aim, form, guards, program, cost, verdict, pair)
 
 
 def explore_model(
@@ -135,7 +140,7 @@ def explore_model(
     roles, ready = prepare(model, set or {}, channels)
     problem = problem_of(roles, ready)
     aim = goal(optimize, max_error)
-    found = explore(problem, aim, effort or default_effort(problem), progress, thorough=True)
+    found = explore(problem, aim, effort or problem.default_effort, progress, thorough=True)
     if found is None:
         raise BrdfcError(
             f"every form of '{model.name}' gives NaN, infinity or a false zero in its domain",
@@ -186,7 +191,7 @@ def _search(
     known = recall(name, problem) if cache else None
     if known is not None:
         return known
-    explored = explore(problem, aim, effort or default_effort(problem), progress)
+    explored = explore(problem, aim, effort or problem.default_effort, progress)
     if explored is None:
         return None
     found = summary(problem, explored)
@@ -199,6 +204,7 @@ def _profiles(
     model: Model,
     roles: Roles,
     program: Program,
+    cost: float,
     verdict: Verdict,
     form: Remembered | None,
     limit: float,
@@ -207,8 +213,7 @@ def _profiles(
     types = {q.name: q.type for q in model.quantities}
     constants = {n: value_text(v, types[n]) for n, v in roles.constants.items()}
     facts = {
-        "program": f"{operations(program)} operators, {price(program):.0f} ns a pixel by the "
-        "price table",
+        "program": f"{operations(program)} operators, {cost:.0f} ns a pixel by the price table",
         "selfcheck": f"CIEDE2000 below {limit:g} at {verdict.points} points of the domain",
         "encoding": str(how),
         "compiler": f"brdfc {__version__}",

@@ -9,7 +9,7 @@ from brdfc.calc.program import Program
 from brdfc.codegen.schedule import schedule
 from brdfc.codegen.select import select
 from brdfc.codegen.tables import clut_program, curve_program
-from brdfc.judge.explore import Problem
+from brdfc.judge.problem import Problem
 from brdfc.source.diagnostics import did_you_mean
 from brdfc.source.errors import ValueGivenError
 from brdfc.symbolic.expression import Expression

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from brdfc.calc.operators import OPERATORS, Operand
 from brdfc.calc.prices import prices
@@ -19,7 +20,8 @@ def operations(program: Program) -> int:
 
 
 def price(program: Program) -> float:
-    """Nanoseconds a pixel on the reference engine, beside what any program costs (`fixed`)."""
+    """Nanoseconds a pixel on the reference engine, beside what any program costs (`fixed`); of a
+    program read from a file, those of its dearest path."""
     return nanoseconds(program.body, program.elements)
 
 
@@ -37,23 +39,33 @@ def cost(name: str, components: int = 1) -> float:
 
 
 def nanoseconds(block: Block, elements: Sequence[Element] = ()) -> float:
-    """Time per pixel of a block's dearest path. Variables count as defined: an `if` right after
-    `env` runs its first block. Without its elements, a block's calls count as if of one channel.
+    """Time per pixel: of both branches by their shares of the pixels where those are known, else
+    of the dearest one. Variables count as defined: an `if` right after `env` runs its first block.
+    Without its elements, a block's calls count as if of one channel.
     """
     total = 0.0
-    for name, count, bodies in steps(block, elements):
-        total += cost(name, count)
-        if bodies:
-            total += max(nanoseconds(*body) for body in bodies)
+    for step in steps(block, elements):
+        total += cost(step.name, step.components)
+        times = [nanoseconds(*body) for body in step.bodies]
+        if step.share is not None:
+            total += step.share * times[0] + (1 - step.share) * times[1]
+        elif times:
+            total += max(times)
     return total
 
 
-Bodies = tuple[tuple[Block, Sequence[Element]], ...]
+class Step(NamedTuple):
+    """One thing the engine does: the name of a price, how many components it is for, and the
+    blocks of which one runs then, the first of two for a share of the pixels."""
+
+    name: str
+    components: int = 1
+    bodies: tuple[tuple[Block, Sequence[Element]], ...] = ()
+    share: float | None = None
 
 
-def steps(block: Block, elements: Sequence[Element]) -> Iterator[tuple[str, int, Bodies]]:
-    """What the engine does one after the other: the name of a price, how many components it is
-    for, and the blocks of which one runs then."""
+def steps(block: Block, elements: Sequence[Element]) -> Iterator[Step]:
+    """What the engine does one after the other."""
     constants, before = 0, ""
     for instruction in block:
         name = instruction.name if isinstance(instruction, Op) else ""
@@ -61,32 +73,33 @@ def steps(block: Block, elements: Sequence[Element]) -> Iterator[tuple[str, int,
             constants += 1
             continue
         if constants:
-            yield "data", constants, ()
+            yield Step("data", constants)
             constants, before = 0, "data"
         if isinstance(instruction, Op):
             if OPERATORS[name].operand is Operand.ELEMENT:
                 yield _call(instruction, elements)
             else:
-                yield name, components(instruction), ()
+                yield Step(name, components(instruction))
         elif isinstance(instruction, If):
             bodies = instruction.bodies[:1] if before == "env" else instruction.bodies
             kind = "if_else" if instruction.complete else "if"
-            yield kind, 1, tuple((body, elements) for body in bodies)
+            share = instruction.share if len(bodies) == 2 else None
+            yield Step(kind, 1, tuple((body, elements) for body in bodies), share)
         else:
-            yield "sel", 1, tuple((body, elements) for body in instruction.bodies)
+            yield Step("sel", 1, tuple((body, elements) for body in instruction.bodies))
         before = name
     if constants:
-        yield "data", constants, ()
+        yield Step("data", constants)
 
 
 def work(block: Block, elements: Sequence[Element] = ()) -> Counter[tuple[str, str]]:
     """How often each price counts, where the longest block of a choice is the one that runs."""
     found: Counter[tuple[str, str]] = Counter()
-    for name, count, bodies in steps(block, elements):
-        found[name, "first"] += 1
-        found[name, "more"] += count - 1
-        if bodies:
-            found += work(*max(bodies, key=lambda body: encoded_length(body[0])))
+    for step in steps(block, elements):
+        found[step.name, "first"] += 1
+        found[step.name, "more"] += step.components - 1
+        if step.bodies:
+            found += work(*max(step.bodies, key=lambda body: encoded_length(body[0])))
     return found
 
 
@@ -104,16 +117,16 @@ def components(op: Op) -> int:
     return 1
 
 
-def _call(op: Op, elements: Sequence[Element]) -> tuple[str, int, Bodies]:
+def _call(op: Op, elements: Sequence[Element]) -> Step:
     """A call of an element: curves, entries of a matrix, or weights and values of a table's
     corners are its components; a calculator runs its function."""
     if op.first >= len(elements):
-        return op.name, 1, ()
+        return Step(op.name)
     element = elements[op.first]
     name = _KINDS.get(element.signature, op.name)
     if isinstance(element, Program):
-        return name, 1, ((element.body, element.elements),)
+        return Step(name, 1, ((element.body, element.elements),))
     if isinstance(element, LookupTable):
-        return name, (1 + element.outputs) << element.inputs, ()
+        return Step(name, (1 + element.outputs) << element.inputs)
     entries = element.inputs * element.outputs if isinstance(element, Matrix) else element.inputs
-    return name, max(entries, 1), ()
+    return Step(name, max(entries, 1))

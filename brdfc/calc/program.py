@@ -7,7 +7,7 @@ binary.py, so that a jump out of range cannot be represented.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from brdfc.calc.operators import OPERATORS, Operator
@@ -39,10 +39,12 @@ class Op:
 
 @dataclass(frozen=True)
 class If:
-    """Pops a condition (true: >= 0.5). otherwise is None where there is no `else`."""
+    """Pops a condition (true: >= 0.5). otherwise is None where there is no `else`. share: the part
+    of the pixels that runs `then`, where a compiler knows; no part of what a file holds."""
 
     then: Block
     otherwise: Block | None = None
+    share: float | None = field(default=None, compare=False, repr=False)
 
     @property
     def bodies(self) -> tuple[Block, ...]:

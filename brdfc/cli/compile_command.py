@@ -67,7 +67,7 @@ def command(
       brdfc compile ward -o curved_mvis.icc --channel incident --channel reflection
       brdfc compile ward -o exact_mvis.icc --optimize accuracy --explain
     """
-    from brdfc.calc.price import operations, price
+    from brdfc.calc.price import operations
     from brdfc.compiler import compile_model
     from brdfc.files import write_whole
     from brdfc.lang.load import load
@@ -92,7 +92,7 @@ def command(
     names = [f"{q.name} ({q.signature})" for q in compiled.roles.variables]
     click.echo(f"variables    {', '.join(names) or 'none'}")
     click.echo(
-        f"program      {operations(program)} operators, about {price(program):.0f} ns "
+        f"program      {operations(program)} operators, about {compiled.price:.0f} ns "
         f"a pixel on the reference engine; stack {verdict.facts.stack}, "
         f"temporaries {verdict.facts.temporaries}"
     )

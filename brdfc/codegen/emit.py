@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from brdfc.calc.operators import OPERATORS, Operand
 from brdfc.calc.program import Block, If, Instruction, Op
@@ -193,7 +193,8 @@ class _Emitter:
             inner = _Path([], list(path.stack), dict(path.saved))
             self.value(branch, inner)
             branches.append(inner)
-        path.code.append(If(tuple(branches[0].code), tuple(branches[1].code)))
+        first, second = (tuple(branch.code) for branch in branches)
+        path.code.append(If(first, second, node.share))
         path.saved = {k: v for k, v in branches[0].saved.items() if k in branches[1].saved}
 
     def without_unread(self, block: Block) -> Block:
@@ -209,8 +210,10 @@ class _Emitter:
             for instruction in block:
                 if isinstance(instruction, If):
                     otherwise = instruction.otherwise
-                    instruction = If(
-                        clean(instruction.then), None if otherwise is None else clean(otherwise)
+                    instruction = replace(
+                        instruction,
+                        then=clean(instruction.then),
+                        otherwise=None if otherwise is None else clean(otherwise),
                     )
                 elif isinstance(instruction, Op) and instruction.name in _TEMPORARY:
                     if instruction.first not in places:

@@ -14,7 +14,8 @@ class Node:
     `count`, or one of `where` (condition, value, otherwise), `vector` (values side by side), `env`,
     `part` (one value of a group). width: values it leaves. start: first channel of `in`, index of
     a `part`. value: of `data`, and the default of
-    `env`, whose four letters are signature.
+    `env`, whose four letters are signature. share: of a `where`, the part of the pixels that takes
+    its first branch, if known.
     """
 
     operator: str
@@ -24,6 +25,7 @@ class Node:
     start: int = 0
     value: float = 0.0
     signature: str = ""
+    share: float | None = None
 
     @property
     def cheap(self) -> bool:
@@ -31,14 +33,14 @@ class Node:
         return self.operator in ("data", "in")
 
 
-_Key = tuple[str, tuple[int, ...], int, int, int, float, str]
+_Key = tuple[str, tuple[int, ...], int, int, int, float, str, float | None]
 _made: WeakValueDictionary[_Key, Node] = WeakValueDictionary()
 
 
 def _intern(node: Node) -> Node:
     n = node
     arguments = tuple(map(id, n.arguments))
-    key = (n.operator, arguments, n.width, n.count, n.start, n.value, n.signature)
+    key = (n.operator, arguments, n.width, n.count, n.start, n.value, n.signature, n.share)
     return _made.setdefault(key, n)
 
 
@@ -81,6 +83,11 @@ def part(group: Node, index: int) -> Node:
 def rebuilt(node: Node, arguments: tuple[Node, ...]) -> Node:
     """The same operator on other arguments."""
     return _intern(replace(node, arguments=arguments))
+
+
+def shared_out(node: Node, arguments: tuple[Node, ...], share: float) -> Node:
+    """The same `where` on other arguments, with its share of pixels."""
+    return _intern(replace(node, arguments=arguments, share=share))
 
 
 def postorder(root: Node) -> list[Node]:

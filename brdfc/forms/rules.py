@@ -70,6 +70,7 @@ RULES: tuple[Rule, ...] = (
     Rule("constant into the root below", "k/sqrt(x)", "1/sqrt(x/k^2)", {"x": ">= 0"}),
     Rule("root of a square", "sqrt(x^2)", "x", {"x": ">= 0"}),
     Rule("square of a root", "sqrt(x)^2", "x", {"x": ">= 0"}),
+    Rule("root less its part", "sqrt(x^2 + y) - x", "y/(sqrt(x^2 + y) + x)", {"x": "> 0"}),
     Rule("reciprocal once", "y/x^2", "y*(1/x)^2", {"x": "> 0"}),
     Rule("cancelled factor", "x*y/x", "y", {"x": "> 0"}),
     # ---- exponentials and logarithms

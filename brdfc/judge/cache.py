@@ -21,9 +21,10 @@ from brdfc.calc.prices import prices
 from brdfc.calc.program import Program
 from brdfc.files import read_file, write_whole
 from brdfc.forms.rules import RULES
-from brdfc.judge.explore import Explored, Problem
+from brdfc.judge.explore import Explored
 from brdfc.judge.goals import Goal
 from brdfc.judge.measure import Measured
+from brdfc.judge.problem import Problem
 from brdfc.source.errors import BrdfcError
 from brdfc.symbolic.expression import Expression, walk
 from brdfc.symbolic.guards import Guard, guarded

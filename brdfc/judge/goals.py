@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 
@@ -23,6 +24,16 @@ class Goal:
         if self.kind == "de":
             return measured.de <= self.limit
         return self.kind == "best" or 2**measured.bits - 1 <= self.limit
+
+    @property
+    def counts_bits(self) -> bool:
+        """Whether errors count in bits; else in CIEDE2000."""
+        return self.kind != "de"
+
+    @property
+    def most(self) -> float:
+        """The largest error accepted, in what counts; 0 for the most accurate there is."""
+        return math.log2(1 + self.limit) if self.counts_bits else self.limit
 
     def __str__(self) -> str:
         unit = {"de": "CIEDE2000", "ulp": "units in the last place"}.get(self.kind)

@@ -65,10 +65,20 @@ class Judge:
         with np.errstate(over="ignore", invalid="ignore"):
             self.unit = np.spacing(np.abs(self.truth).astype(np.float32)).astype(np.float64)
         self.graphs = _graphs(points, bindings)
+        self.usual = self.graphs.only(np.array([s == "uniform" for s in points.strata]))
+
+    def shared_out(self, node: Node) -> Node:
+        """A form's graph, with the share of the domain's pixels (uniform ones) in each branch."""
+        return self.usual.shared_out(node)
 
     def measure(self, node: Node) -> Measured | None:
         """The figures of a form's graph; None if it gives NaN, infinity or a false zero."""
         return self.figures(self.graphs.values(node), estimated_price(node))
+
+    def errors(self, node: Node) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The error of a form's graph at every point: in bits, and in CIEDE2000."""
+        bits, de = self._errors(self.graphs.values(node).astype(np.float64))
+        return bits.max(axis=-1), de
 
     def measure_program(self, program: Program, channels: NDArray[np.float32]) -> Measured | None:
         """The figures of a program on channels that stand for the points', each point with its
@@ -90,10 +100,7 @@ class Judge:
         wide = result.astype(np.float64)
         if (self.known[:, None] & (wide == 0) & (np.abs(self.truth) > FALSE_ZERO)).any():
             return None
-        ulps = np.where(self.counted, np.abs(wide - self.truth) / self.unit, 0.0)
-        bits = np.log2(1 + ulps)
-        truth = np.where(self.known[:, None], self.truth, 0.0)
-        de = np.where(self.known, ciede2000(wide, truth), 0.0)
+        bits, de = self._errors(wide)
         counted = max(int(self.counted.sum()), 1)
         return Measured(
             float(bits.max()),
@@ -102,6 +109,14 @@ class Judge:
             price,
             int(bits.max(axis=-1).argmax()),
         )
+
+    def _errors(
+        self, result: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """(points, components) in bits, 0 where values do not count; (points,) in CIEDE2000."""
+        ulps = np.where(self.counted, np.abs(result - self.truth) / self.unit, 0.0)
+        truth = np.where(self.known[:, None], self.truth, 0.0)
+        return np.log2(1 + ulps), np.where(self.known, ciede2000(result, truth), 0.0)
 
 
 def _truth(exact: Expression, points: Points) -> tuple[NDArray[np.float64], bool]:

@@ -7,10 +7,10 @@ import random
 
 import pytest
 
+from brdfc.forms.neighbours import directions, places
 from brdfc.forms.patterns import CONSTANT, instantiate, match, match_product
 from brdfc.forms.products import factors, product
 from brdfc.forms.rules import VALUE
-from brdfc.forms.search import directions, places
 from brdfc.forms.texts import pattern
 from brdfc.symbolic.evaluate import evaluate_precisely
 from brdfc.symbolic.expression import Expression, walk

@@ -6,8 +6,9 @@ import time
 
 import pytest
 
+from brdfc.forms.neighbours import Neighbours, places
 from brdfc.forms.products import factors, product
-from brdfc.forms.search import Form, Found, Neighbours, Score, places, search
+from brdfc.forms.search import Form, Found, Score, search
 from brdfc.forms.texts import pattern
 from brdfc.symbolic.expression import Expression, make, quantity
 from brdfc.symbolic.intervals import Interval, single

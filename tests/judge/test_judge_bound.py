@@ -12,8 +12,8 @@ from random_expressions import values_at as quantities_at
 from brdfc.codegen.select import select
 from brdfc.compiler import prepare, problem_of
 from brdfc.judge.bound import error_bound
-from brdfc.judge.explore import Problem
 from brdfc.judge.measure import Judge
+from brdfc.judge.problem import Problem
 from brdfc.judge.strata import points as strata
 from brdfc.lang.load import load, load_text
 from brdfc.lang.model import Model

@@ -17,8 +17,9 @@ from brdfc.calc.text import assemble
 from brdfc.compiler import compile_model, prepare, problem_of
 from brdfc.judge import cache
 from brdfc.judge.cache import folder, holds, key, recall, remember, summary
-from brdfc.judge.explore import Problem, explore
+from brdfc.judge.explore import explore
 from brdfc.judge.goals import GOALS, Goal
+from brdfc.judge.problem import Problem
 from brdfc.lang.load import load
 from brdfc.symbolic.expression import make, quantity, vector
 from brdfc.symbolic.formula import Formula

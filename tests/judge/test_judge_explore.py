@@ -26,8 +26,10 @@ from brdfc.compiler import compile_model, prepare, problem_of
 from brdfc.engine.interpreter import run
 from brdfc.judge import cache as remembered
 from brdfc.judge import explore as explore_module
-from brdfc.judge.explore import Explored, Problem, explore
+from brdfc.judge.candidates import SAME_PRICE
+from brdfc.judge.explore import Explored, explore
 from brdfc.judge.goals import GOALS, Goal, goal
+from brdfc.judge.problem import Problem
 from brdfc.lang.load import load, load_text
 from brdfc.lang.model import Model
 from brdfc.source.errors import SelfCheckError, ValueGivenError
@@ -128,7 +130,7 @@ def test_every_goal_takes_the_cheapest_good_enough_of_the_finalists() -> None:
         scheduled = [c for c in found.candidates if c.program is not None and c.works]
         good = [c for c in scheduled if GOALS[aim].accepts(c.measured)]
         least = min(c.price for c in good)
-        assert found.chosen.price <= least * (1 + explore_module.SAME_PRICE)
+        assert found.chosen.price <= least * (1 + SAME_PRICE)
     assert ward("accuracy").chosen.measured.bits <= ward("speed").chosen.measured.bits
 
 
@@ -258,7 +260,7 @@ def test_grouped_operators_compute_the_same_bit_for_bit() -> None:
 def test_estimated_prices_order_forms_as_their_schedules_do() -> None:
     p = problem(load("ward"))
     found = ward("balanced")
-    graphs = [explore_module._graph(p, c.form.expression) for c in found.candidates if c.works]
+    graphs = [p.graph(c.form.expression) for c in found.candidates if c.works]
     scheduled = [price(schedule(g, p.inputs)) for g in graphs]
     estimated = [estimated_price(g) for g in graphs]
     ranks = [np.argsort(np.argsort(values)) for values in (scheduled, estimated)]

@@ -14,9 +14,10 @@ from brdfc.codegen.select import VariableBinding, select
 from brdfc.compiler import prepare, problem_of
 from brdfc.engine.interpreter import run
 from brdfc.forms.texts import pattern
-from brdfc.judge.explore import Problem, explore
+from brdfc.judge.explore import explore
 from brdfc.judge.goals import GOALS
 from brdfc.judge.measure import Judge, Measured
+from brdfc.judge.problem import Problem
 from brdfc.judge.strata import FEW, STRATA, Points, points
 from brdfc.lang.load import load
 from brdfc.symbolic.expression import Expression, const, make, quantity, rebuild, walk
