@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import click
 
-from brdfc.cli.options import pairs
+from brdfc.cli.options import geometry_option, pairs
 from brdfc.cli.search_options import end_progress, search_options, shown_progress
 
 
@@ -21,6 +21,7 @@ from brdfc.cli.search_options import end_progress, search_options, shown_progres
     help="What to chart: forms (default); encodings: calculator against tables; storage: "
     "coefficients in fewer bits; engines: time measured here. Repeatable.",
 )
+@geometry_option
 @search_options
 def command(
     model: str,
@@ -28,6 +29,7 @@ def command(
     fixed: tuple[str, ...],
     channels: tuple[str, ...],
     layers: tuple[str, ...],
+    geometry: str | None,
     optimize: str,
     max_error: str | None,
     effort: int | None,
@@ -52,7 +54,7 @@ def command(
     from brdfc.lang.load import load
 
     chart_kind(output)  # a chart that cannot be drawn is refused before the search
-    loaded, given = load(model), pairs(fixed, "--set")
+    loaded, given = load(model, geometry), pairs(fixed, "--set")
     explored = explore_model(
         loaded,
         given,

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from brdfc.cli.options import pairs
+from brdfc.cli.options import geometry_option, pairs
 from brdfc.cli.search_options import end_progress, search_options, shown_progress
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     help="A calculator program (default), a lookup table of N points a channel, or a calculator "
     "with curves of N points; the last two need every variable fixed with --set.",
 )
+@geometry_option
 @search_options
 @click.option("--explain", is_flag=True, help="Show how the chosen form was derived.")
 @click.option("--no-cache", is_flag=True, help="Search anew, and keep nothing.")
@@ -48,6 +49,7 @@ def command(
     channels: tuple[str, ...],
     asm: str | None,
     encode: str,
+    geometry: str | None,
     optimize: str,
     max_error: str | None,
     effort: int | None,
@@ -73,7 +75,7 @@ def command(
     from brdfc.lang.load import load
 
     compiled = compile_model(
-        load(model),
+        load(model, geometry),
         pairs(fixed, "--set"),
         channels,
         optimize=optimize,

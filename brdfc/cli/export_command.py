@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import click
 
-from brdfc.cli.options import pairs
+from brdfc.cli.options import geometry_option, pairs
 
 
 @click.command("export")
@@ -16,7 +16,10 @@ from brdfc.cli.options import pairs
     metavar="NAME=VALUE",
     help="Fix a quantity first: m=0.2, incident=40deg. Repeatable.",
 )
-def command(model: str, fpcore: bool, output: str | None, fixed: tuple[str, ...]) -> None:
+@geometry_option
+def command(
+    model: str, fpcore: bool, output: str | None, fixed: tuple[str, ...], geometry: str | None
+) -> None:
     """Write the formula of MODEL, a .brdf file or a library model, for other tools.
 
     FPCore is what Herbie, FPTaylor, Daisy and others read that judge or improve the accuracy of
@@ -35,7 +38,7 @@ def command(model: str, fpcore: bool, output: str | None, fixed: tuple[str, ...]
     from brdfc.roles import assign_roles
     from brdfc.symbolic.formula import formula
 
-    loaded = load(model)
+    loaded = load(model, geometry)
     roles = assign_roles(loaded, pairs(fixed, "--set"), ())
     ready = formula(loaded, roles.constants)
     text = to_fpcore([ready.exact], loaded.name, ready.domain, loaded.quantities, loaded.citations)

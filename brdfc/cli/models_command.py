@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from brdfc.cli.options import geometry_option
+
 if TYPE_CHECKING:
     from brdfc.lang.model import Definition, Model
 
@@ -13,7 +15,8 @@ _WIDTH = 96
 
 @click.command("models")
 @click.argument("name", required=False)
-def command(name: str | None) -> None:
+@geometry_option
+def command(name: str | None, geometry: str | None) -> None:
     """List the model library; with NAME the formula, parameters, ranges and citation.
 
     NAME may also be the path of a .brdf file.
@@ -27,11 +30,11 @@ def command(name: str | None) -> None:
 
     if name is None:
         for entry_name, entry in library().items():
-            click.echo(f"{entry_name:<16} {entry.kind:<8} {entry.title}")
+            click.echo(f"{entry_name:<30} {entry.kind:<8} {entry.title}")
         return
     from brdfc.lang.model import Model
 
-    found = load_file(name)
+    found = load_file(name, geometry)
     click.echo(f"{found.name}: {found.title}\n")
     for citation in found.citations:
         click.echo(textwrap.fill(citation, _WIDTH, subsequent_indent="  "))
@@ -57,8 +60,12 @@ def _show_model(model: Model) -> None:
             f"{q.role.value:<9} {q.name + signature:<20} {q.type.name:<12} {ends:<16} "
             f"default {value_text(q.default, q.type):<8} {q.description}"
         )
+    if model.geometry:
+        click.echo(f"\ngeometry: {model.geometry} (brdfc models {model.geometry})")
     if model.laws:
         click.echo(f"\nlaws claimed: {', '.join(map(str, model.laws))}")
+    for breach in model.breaches:
+        click.echo(f"law broken: {breach.law}, {breach.figure:g}: {breach.note}")
     click.echo(f"examples: {len(model.examples)}\n")
 
 

@@ -25,6 +25,16 @@ def pairs(values: Iterable[str], option: str) -> dict[str, str]:
     return given
 
 
+def geometry_option(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The --geometry option of commands that read models."""
+    return click.option(
+        "--geometry",
+        metavar="plane|full|FILE",
+        help="How directions are given: signed angles in the plane of incidence (plane, the "
+        "default), or two zeniths and two azimuths (full).",
+    )(function)
+
+
 def environment_option(function: Callable[..., Any]) -> Callable[..., Any]:
     """The --env option of commands that run profiles."""
     return click.option(

@@ -82,8 +82,19 @@ class _Builder:
             description=_text(description),
         )
 
-    def _import(self, span: Span, target: Token, *names: Any) -> ast.Import:
-        return ast.Import(span, _text(target), target.type == "STRING", self._all(names))
+    def _import(
+        self, span: Span, target: Token, alias: Token | None, names: Any, bindings: Any
+    ) -> ast.Import:
+        taken = self._all(tuple(names.children)) if names else ()
+        bound = self._all(tuple(bindings.children)) if bindings else ()
+        if alias is not None and taken:
+            message = "'as' before a list of names renames nothing"
+            raise Rejected(Diagnostic(self._place(alias), message, hint="write: (name as other)"))
+        is_path, called = target.type == "STRING", str(alias) if alias else None
+        return ast.Import(span, _text(target), is_path, called, taken, bound)
+
+    def _binding(self, span: Span, name: Token, value: Any) -> ast.Binding:
+        return ast.Binding(span, str(name), self.built(value))
 
     def _import_name(self, span: Span, name: Token, alias: Token | None) -> ast.ImportName:
         return ast.ImportName(span, str(name), str(alias or name))
@@ -101,15 +112,41 @@ class _Builder:
     def _radiance(self, span: Span, body: Any) -> ast.Radiance:
         return ast.Radiance(span, self.built(body))
 
-    def _law(self, span: Span, name: Token, comparison: Token | None, bound: Any) -> ast.Law:
+    def _law(
+        self, span: Span, name: Token, names: Any, comparison: Token | None, bound: Any,
+        condition: Any,
+    ) -> ast.Law:  # fmt: skip
+        self._refuse_lower(comparison)
+        tokens = names.children if names else ()
+        of = tuple(ast.Name(self._place(token), str(token)) for token in tokens)
+        return ast.Law(span, str(name), of, self.built(bound), self.built(condition))
+
+    def _breaks(
+        self, span: Span, name: Token, comparison: Token | None, bound: Any, geometry: Any,
+        *parts: Any,
+    ) -> ast.Breaks:  # fmt: skip
+        self._refuse_lower(comparison)
+        *given, figure, within, note = parts
+        return ast.Breaks(
+            span=span,
+            name=str(name),
+            bound=self.built(bound),
+            geometry=_geometry(geometry),
+            given=self._all(tuple(given)),
+            figure=self.built(figure),
+            within=self.built(within),
+            note=_text(note),
+        )
+
+    def _refuse_lower(self, comparison: Token | None) -> None:
         if comparison is not None and comparison != "<=":
             message = f"a law's bound is an upper one, not '{comparison}'"
             raise Rejected(Diagnostic(self._place(comparison), message, expected="'<='"))
-        return ast.Law(span, str(name), self.built(bound))
 
-    def _example(self, span: Span, *parts: Any) -> ast.Example:
+    def _example(self, span: Span, geometry: Any, *parts: Any) -> ast.Example:
         *given, result, within = parts
-        return ast.Example(span, self._all(tuple(given)), self.built(result), self.built(within))
+        taken = self._all(tuple(given))
+        return ast.Example(span, _geometry(geometry), taken, self.built(result), self.built(within))
 
     def _given(self, span: Span, name: Token, values: Any) -> ast.Given:
         return ast.Given(span, str(name), self.built(values))
@@ -156,6 +193,11 @@ class _Builder:
 
     def _let_in(self, span: Span, name: Token, value: Any, body: Any) -> ast.LetIn:
         return ast.LetIn(span, str(name), self.built(value), self.built(body))
+
+
+def _geometry(tree: Any) -> str | None:
+    """The geometry that `in NAME` names."""
+    return str(tree.children[0]) if tree else None
 
 
 def _text(token: Token | None) -> str:

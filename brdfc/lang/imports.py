@@ -7,11 +7,15 @@ from dataclasses import replace
 from pathlib import Path
 
 from brdfc.data import data_dir
-from brdfc.lang.model import Definition, Quantity, Symbol
+from brdfc.lang.model import Definition, Symbol
 from brdfc.lang.values import BadValue
 from brdfc.source.diagnostics import did_you_mean
 
 SUFFIX = ".brdf"
+GEOMETRY = "geometry"
+"""The import that stands for the geometry a model is read with."""
+DEFAULT_GEOMETRY = "plane"
+"""The geometry where none is chosen: signed angles in the plane of incidence."""
 
 
 def library_folder() -> Path:
@@ -56,8 +60,8 @@ def is_file(path: Path) -> bool:
         return False
 
 
-def standing_for(definition: Definition, quantities: Mapping[str, Quantity]) -> Definition:
-    """The definition, resting on these quantities instead of its own ones of the same names."""
+def standing_for(definition: Definition, given: Mapping[str, Symbol]) -> Definition:
+    """The definition, resting on what is given instead of its own quantities of those names."""
     copies: dict[int, dict[str, Symbol]] = {}
 
     def copied(scope: Mapping[str, Symbol]) -> Mapping[str, Symbol]:
@@ -69,7 +73,7 @@ def standing_for(definition: Definition, quantities: Mapping[str, Quantity]) -> 
                 if isinstance(symbol, Definition):
                     copy[name] = replace(symbol, scope=copied(symbol.scope))
                 else:
-                    copy[name] = quantities.get(symbol.name, symbol)
+                    copy[name] = given.get(symbol.name, symbol)
         return copies[id(scope)]
 
     return replace(definition, scope=copied(definition.scope))

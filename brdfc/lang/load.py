@@ -5,13 +5,20 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 from brdfc.files import read_file
 from brdfc.lang import tree
-from brdfc.lang.imports import SUFFIX, found_file, is_file, library_files
+from brdfc.lang.imports import (
+    DEFAULT_GEOMETRY,
+    GEOMETRY,
+    SUFFIX,
+    found_file,
+    is_file,
+    library_files,
+)
 from brdfc.lang.limits import MAX_IMPORTS, MAX_TEXT
 from brdfc.lang.model import Model, Module
 from brdfc.lang.report import Report
@@ -32,13 +39,16 @@ class LibraryEntry:
     path: Path
 
 
-def load(reference: str | Path) -> Model:
+def load(reference: str | Path, geometry: str | Path | None = None) -> Model:
     """The checked model of a `.brdf` file, or of the library by its name.
 
     reference: a path (it exists, ends in .brdf or has a separator in it), else a library name.
-    Raises ModelError with all that is wrong in the text, or BrdfcError where there is none.
+    geometry: "plane" (where None), "full", or the reference of another module of angles and
+    cosines: what `import geometry` stands for in the model.
+    Raises ModelError with all that is wrong in the text, or BrdfcError where there is none, or
+    where a geometry is chosen for a model that imports none.
     """
-    found = load_file(reference)
+    found = load_file(reference, geometry)
     if isinstance(found, Module):
         raise BrdfcError(
             f"'{found.name}' is a module of functions, not a model",
@@ -48,15 +58,24 @@ def load(reference: str | Path) -> Model:
     return found
 
 
-def load_file(reference: str | Path) -> Model | Module:
+def load_file(reference: str | Path, geometry: str | Path | None = None) -> Model | Module:
     """Like load, but also for modules."""
     path = _path(reference)
-    return _Loader().whole(_source(path, str(path)), path, str(reference))
+    found = _Loader(geometry).whole(_source(path, str(path)), path, str(reference))
+    if geometry is not None and isinstance(found, Model) and not found.geometry:
+        raise BrdfcError(
+            f"'{found.name}' imports no geometry: its angles are its own",
+            where=found.origin,
+            hint=f"leave out the geometry, or write the model with: import {GEOMETRY} (...)",
+        )
+    return found
 
 
-def load_text(text: str, name: str = "<text>", folder: str | Path = ".") -> Model | Module:
+def load_text(
+    text: str, name: str = "<text>", folder: str | Path = ".", geometry: str | None = None
+) -> Model | Module:
     """The checked model or module of a text; its imports start from the folder."""
-    return _Loader().whole(Source(name, text), Path(folder) / name, name)
+    return _Loader(geometry).whole(Source(name, text), Path(folder) / name, name)
 
 
 def library() -> dict[str, LibraryEntry]:
@@ -70,7 +89,7 @@ def library() -> dict[str, LibraryEntry]:
     return found
 
 
-def _path(reference: str | Path) -> Path:
+def _path(reference: str | Path, what: str = "model") -> Path:
     """The file a user means."""
     path = Path(reference)
     named = isinstance(reference, str) and not (
@@ -83,7 +102,7 @@ def _path(reference: str | Path) -> Path:
         return known[str(reference)]
     listed = f"the library has: {', '.join(known)}" if known else None
     raise BrdfcError(
-        f"there is no library model '{reference}'",
+        f"there is no library {what} '{reference}'",
         hint=did_you_mean(str(reference), known) or listed,
     )
 
@@ -109,7 +128,8 @@ def _source(path: Path, shown: str) -> Source:
 class _Loader:
     """One load: the file asked for and all that it imports, each read and checked once."""
 
-    def __init__(self) -> None:
+    def __init__(self, geometry: str | Path | None) -> None:
+        self._geometry = DEFAULT_GEOMETRY if geometry is None else geometry
         self._diagnostics: list[Diagnostic] = []
         self._checked: dict[Path, Model | Module | None] = {}
         # The files being read, the outermost first: as they are found, and as they are shown.
@@ -147,7 +167,11 @@ class _Loader:
     ) -> Model | Module | None:
         """The file an import names; None where it has errors, or where there is none."""
         try:
-            path = found_file(statement.target, statement.is_path, folder)
+            stands_for_geometry = statement.target == GEOMETRY and not statement.is_path
+            if stands_for_geometry:
+                path = _path(self._geometry, "geometry")
+            else:
+                path = found_file(statement.target, statement.is_path, folder)
             resolved = path.resolve()
             if resolved in self._open:
                 shown = list(self._open.values())[list(self._open).index(resolved) :]
@@ -157,7 +181,10 @@ class _Loader:
                 raise BadValue(f"more than {MAX_IMPORTS} files import one another in a row")
             if resolved not in self._checked:
                 source = _source(path, str(path))
-                self._checked[resolved] = self._file(source, path, str(path))
+                found = self._file(source, path, str(path))
+                if stands_for_geometry and found is not None:
+                    found = replace(found, geometry=found.name)
+                self._checked[resolved] = found
         except BadValue as bad:
             report.error(statement.span, bad.message, hint=bad.hint)
             return None

@@ -68,14 +68,39 @@ Symbol = Quantity | Definition
 
 @dataclass(frozen=True)
 class Law:
-    """A law the model claims: reciprocal, positive, or energy with its bound."""
+    """A law the model claims, or says it breaks (facts.LAWS has them all).
+
+    bound: of `energy` and `bounded`; quantities: the names that `increasing` is about; condition:
+    where the law is claimed, if not everywhere (a truth value of the model's parameters).
+    """
 
     name: str
     bound: float | None
     span: Span
+    quantities: tuple[str, ...] = ()
+    condition: Definition | None = None
 
     def __str__(self) -> str:
-        return self.name if self.bound is None else f"{self.name} <= {self.bound:g}"
+        text = " ".join((self.name, *self.quantities))
+        text += "" if self.bound is None else f" <= {self.bound:g}"
+        return f"{text} where {self.condition.body.span.text}" if self.condition else text
+
+
+@dataclass(frozen=True)
+class Breach:
+    """A law that a model says it breaks, and by how much at one point.
+
+    given: the value of every quantity by its name, as for an example. figure: the albedo
+    (`energy`), the reflectance (`bounded`), the relative difference of both ways (`reciprocal`) or
+    the value (`positive`) there; within: the relative difference allowed.
+    """
+
+    law: Law
+    given: Mapping[str, tuple[float, ...]]
+    figure: float
+    within: float
+    note: str
+    span: Span
 
 
 @dataclass(frozen=True)
@@ -105,9 +130,12 @@ class Model:
     radiance: Definition
     definitions: tuple[Definition, ...]
     laws: tuple[Law, ...]
+    breaches: tuple[Breach, ...]
     examples: tuple[Example, ...]
     origin: str
     """Where it was read from, as the user would write it: a path, or a library model's name."""
+    geometry: str = ""
+    """The name of the geometry it was read with; "" where it declares its own angles."""
 
     def quantity(self, name: str) -> Quantity | None:
         """The quantity of that name, or of that four-letter signature."""
@@ -119,7 +147,7 @@ class Model:
 
 @dataclass(frozen=True)
 class Module:
-    """A file of definitions to import, checked; it declares no quantities."""
+    """A file of definitions to import, checked, with the quantities that they rest on."""
 
     name: str
     title: str
@@ -127,3 +155,5 @@ class Module:
     notes: tuple[str, ...]
     definitions: tuple[Definition, ...]
     origin: str
+    quantities: tuple[Quantity, ...] = ()
+    geometry: str = ""

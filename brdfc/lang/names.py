@@ -31,27 +31,33 @@ def parameter_names(definition: Definition) -> frozenset[str]:
     return frozenset(parameter.name for parameter in definition.parameters or ())
 
 
-def used_names(definition: Definition) -> set[str]:
-    """The names of its scope that a definition's body uses, functions included."""
+def names_in(definition: Definition) -> set[str]:
+    """The names that a definition's body uses, functions included, local names not."""
     return {
         node.function if isinstance(node, Call) else node.name
         for node, bound in _references(definition.body, parameter_names(definition))
         if isinstance(node, Call) or (isinstance(node, Name) and node.name not in bound)
-    } & definition.scope.keys()
+    }
+
+
+def used_names(definition: Definition) -> set[str]:
+    """The names of its scope that a definition's body uses, functions included."""
+    return names_in(definition) & definition.scope.keys()
 
 
 def quantities_used(definition: Definition) -> dict[str, Quantity]:
     """The quantities a definition rests on, through whatever it uses, by name."""
     found: dict[str, Quantity] = {}
-    seen: set[Span] = set()
+    # By identity: what was imported twice, with other quantities, stands at one place of a text.
+    seen: set[int] = set()
     waiting = [definition]
     while waiting:
         current = waiting.pop()
         for symbol in (current.scope[name] for name in sorted(used_names(current))):
             if isinstance(symbol, Quantity):
                 found[symbol.name] = symbol
-            elif symbol.span not in seen:
-                seen.add(symbol.span)
+            elif id(symbol) not in seen:
+                seen.add(id(symbol))
                 waiting.append(symbol)
     return found
 

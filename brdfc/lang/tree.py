@@ -146,13 +146,27 @@ class ImportName:
 
 
 @dataclass(frozen=True)
+class Binding:
+    """`m = 0.05` of an import: what stands for a quantity of the imported file."""
+
+    span: Span
+    name: str
+    value: Expr
+
+
+@dataclass(frozen=True)
 class Import:
-    """`import target` (a whole model) or `import target (names)`; target is a name or a "path"."""
+    """`import target` (a whole model) or `import target (names)`, `with (bindings)`.
+
+    target is a name or a "path"; alias is what a whole model is called here.
+    """
 
     span: Span
     target: str
     is_path: bool
+    alias: str | None
     names: tuple[ImportName, ...]
+    bindings: tuple[Binding, ...]
 
 
 @dataclass(frozen=True)
@@ -186,11 +200,16 @@ class Radiance:
 
 @dataclass(frozen=True)
 class Law:
-    """`law reciprocal`, `law positive`, `law energy <= 1`; bound is the number, if there is one."""
+    """`law reciprocal`, `law increasing Rd ks`, `law energy <= 1 where ks <= 0.5`.
+
+    names, bound and condition are empty or None where a law is written without them.
+    """
 
     span: Span
     name: str
+    names: tuple[Name, ...]
     bound: Number | None
+    condition: Expr | None
 
 
 @dataclass(frozen=True)
@@ -203,13 +222,31 @@ class Given:
 
 
 @dataclass(frozen=True)
-class Example:
-    """`example a=1 b=40deg -> (x, y, z) within 1e-6`: an executable fact of the model."""
+class Breaks:
+    """`breaks energy <= 1 incident=85deg -> 1.128 within 1e-3 "why"`: a law the model breaks."""
 
     span: Span
+    name: str
+    bound: Number | None
+    geometry: str | None
+    given: tuple[Given, ...]
+    figure: Number
+    within: Number | None
+    note: str
+
+
+@dataclass(frozen=True)
+class Example:
+    """`example a=1 b=40deg -> (x, y, z) within 1e-6`: an executable fact of the model.
+
+    geometry: the one it is stated in (`example in full ...`), None for the usual one.
+    """
+
+    span: Span
+    geometry: str | None
     given: tuple[Given, ...]
     result: tuple[Number, ...]
     within: Number | None
 
 
-Statement = Header | Declaration | Import | Let | Radiance | Law | Example
+Statement = Header | Declaration | Import | Let | Radiance | Law | Breaks | Example

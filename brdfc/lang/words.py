@@ -12,11 +12,14 @@ STATEMENTS = (
     "let",
     "radiance",
     "law",
+    "breaks",
     "example",
 )
 """The words that begin a statement."""
 
-CONTINUATIONS = ("cite", "note", "in", "as", "where", "else", "and", "or", "not", "within")
+CONTINUATIONS = (
+    "cite", "note", "in", "as", "with", "where", "else", "and", "or", "not", "within"
+)  # fmt: skip
 """The words that stand within one."""
 
 KEYWORDS = frozenset(STATEMENTS + CONTINUATIONS)

@@ -69,6 +69,7 @@ def metadata(
     entries: list[tuple[str, str]] = [("model", model.name), ("title", model.title)]
     entries += [(f"citation.{i}", text) for i, text in enumerate(model.citations, 1)]
     entries += [(f"note.{i}", text) for i, text in enumerate(model.notes, 1)]
+    entries += [("geometry", model.geometry)] if model.geometry else []
     for role, quantities in (("channel", channels), ("env", variables)):
         for i, quantity in enumerate(quantities, 1):
             entries += _quantity_entries(f"{role}.{i}", quantity)

@@ -80,14 +80,23 @@ def _tamed(value: Any) -> Any:
         return value
     if value.is_Rational:
         bits = max(abs(value.p).bit_length(), value.q.bit_length())
-        return value if bits < _LONGEST else sympy.Float(value, DIGITS)
+        return value if bits < _LONGEST else _rounded(value)
     if value.is_finite is False or value.is_real is False:
         return None
     rough = value.evalf(15)
     if not rough.is_Float or abs(rough) > _out_of_reach():
         return sympy.Integer(0) if rough.is_zero else None
     long = len(list(sympy.preorder_traversal(value))) > _MOST_PARTS
-    return value.evalf(DIGITS) if long else value
+    return _rounded(value) if long else value
+
+
+def _rounded(value: Any) -> Any:
+    """A number to DIGITS digits. Where all of them cancel it is 0: SymPy would give what is left
+    of its working precision, and take that for the precision of all that is made of it."""
+    import sympy
+
+    rounded = value.evalf(DIGITS)
+    return rounded if rounded._prec >= sympy.Float(1, DIGITS)._prec else sympy.Integer(0)
 
 
 @cache
@@ -102,7 +111,7 @@ def _rational(value: Any) -> Fraction | None:
         return None if value is None else Fraction(int(value))
     if value.is_Rational:
         return Fraction(int(value.p), int(value.q))
-    return Fraction(str(value.evalf(DIGITS)))
+    return Fraction(str(_rounded(value)))
 
 
 @cache

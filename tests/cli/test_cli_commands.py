@@ -310,7 +310,7 @@ def test_check_of_a_profile_exits_with_1_on_an_error(tmp_path: Path) -> None:
 def test_models_lists_the_library_and_shows_one() -> None:
     done = run("models")
     listed = {line.split()[0] for line in done.stdout.splitlines()}
-    assert {"lambert", "ward", "ward_printed", "cook_torrance", "microfacet"} <= listed
+    assert {"lambert", "ward", "ward_printed", "cook_torrance", "fresnel"} <= listed
     shown = run("models", "ward").stdout
     for part in ("G. J. Ward", "0.001..1", "(inci)", "radiance =", "default 45deg"):
         assert part in shown
