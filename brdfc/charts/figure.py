@@ -23,7 +23,7 @@ from brdfc.charts.scales import shown_value, style_axes
 GREY, BLUE, VERMILION, GREEN, PURPLE = "#8a8a8a", "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 SHAPES = "o^vPX"
 """A shape a layer; the sixth layer begins anew."""
-_NO_DATE = {
+NO_DATE = {
     "svg": {"Date": None, "Creator": None, "Format": None, "Type": None},
     "png": {"Software": None},
 }
@@ -42,7 +42,7 @@ def rendered(points: Sequence[Point], title: str, kind: str) -> bytes:
         # Without a salt the names inside an SVG are random; paths look the same without the font.
         matplotlib.rc("svg", hashsalt="brdfc", fonttype="path")
         picture = io.BytesIO()
-        _figure(points, title).savefig(picture, format=kind, dpi=160, metadata=_NO_DATE[kind])
+        _figure(points, title).savefig(picture, format=kind, dpi=160, metadata=NO_DATE[kind])
         return picture.getvalue()
 
 

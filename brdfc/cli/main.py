@@ -21,6 +21,7 @@ _COMMANDS = {
     "eval": "Evaluate single pixels through a MID and an MVIS.",
     "export": "Write a model's formula for other tools, as FPCore.",
     "models": "List the model library, or show one model.",
+    "stability": "Show where a model fails in float32, and by how much.",
 }
 
 

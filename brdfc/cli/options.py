@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +34,22 @@ def geometry_option(function: Callable[..., Any]) -> Callable[..., Any]:
         help="How directions are given: signed angles in the plane of incidence (plane, the "
         "default), or two zeniths and two azimuths (full).",
     )(function)
+
+
+def whole_number(least: int, most: int) -> Callable[[click.Context, click.Parameter, str], int]:
+    """A callback for an option that takes a whole number, also as `1e7` or `20_000`."""
+
+    def parsed(context: click.Context, option: click.Parameter, text: str) -> int:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not value.is_integer() or not least <= value <= most:
+            message = f"'{text}' is no whole number from {least:,} to {most:,}; write, say, 1e6"
+            raise click.BadParameter(message, context, option)
+        return int(value)
+
+    return parsed
 
 
 def environment_option(function: Callable[..., Any]) -> Callable[..., Any]:

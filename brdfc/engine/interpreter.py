@@ -24,8 +24,10 @@ from brdfc.engine.kernels import (
     BINARY,
     FOLDED,
     GROUPED,
+    IEEE,
     SCALED,
     UNARY,
+    Kernel,
     Values,
     holds,
     selector,
@@ -54,6 +56,7 @@ class _Machine:
     stack: list[Values] = field(default_factory=list)
     temporaries: dict[int, Values] = field(default_factory=dict)
     outputs: dict[int, Values] = field(default_factory=dict)
+    binary: Mapping[str, Kernel] = field(default_factory=lambda: BINARY)
 
     def pop(self, count: int) -> list[Values]:
         taken = self.stack[len(self.stack) - count :]
@@ -73,14 +76,18 @@ class _Machine:
             [part(v) for v in self.stack],
             {k: part(v) for k, v in self.temporaries.items()},
             {k: part(v) for k, v in self.outputs.items()},
+            self.binary,
         )
 
 
-def run(element: Element, pixels: ArrayLike, environment: Mapping[str, float]) -> Values:
+def run(
+    element: Element, pixels: ArrayLike, environment: Mapping[str, float], *, ieee: bool = False
+) -> Values:
     """Apply an element, usually a calculator, to pixels.
 
     pixels: (..., inputs), taken as float32. environment: variables by signature (four letters,
-    spaces at the end left out); `env` finds the others undefined. Returns (..., outputs), float32.
+    spaces at the end left out); `env` finds the others undefined. ieee: x/0 is an infinity or NaN,
+    as on engines that leave it to the processor. Returns (..., outputs), float32.
     Raises ProgramError when a program cannot be proven safe or the channels do not fit.
     """
     held = element.inputs + element.outputs
@@ -92,22 +99,26 @@ def run(element: Element, pixels: ArrayLike, environment: Mapping[str, float]) -
         raise ProgramError(f"{element.inputs} channels are needed, the array is {array.shape}")
     flat = array.reshape(math.prod(array.shape[:-1]), element.inputs)
     result = np.empty((len(flat), element.outputs), dtype=np.float32)
+    binary = IEEE if ieee else BINARY
     with np.errstate(all="ignore"):
         for start in range(0, len(flat), step):
             block = flat[start : start + step]
             channels = [np.ascontiguousarray(block[:, c]) for c in range(element.inputs)]
-            outputs = _apply(element, channels, environment)
+            outputs = _apply(element, channels, environment, binary)
             for channel, values in enumerate(outputs):
                 result[start : start + step, channel] = values
     return result.reshape(*array.shape[:-1], element.outputs)
 
 
 def _apply(
-    element: Element, inputs: list[Values], environment: Mapping[str, float]
+    element: Element,
+    inputs: list[Values],
+    environment: Mapping[str, float],
+    binary: Mapping[str, Kernel],
 ) -> list[Values]:
     """Any element on a list of channels."""
     if isinstance(element, Program):
-        machine = _Machine(element, environment, inputs)
+        machine = _Machine(element, environment, inputs, binary=binary)
         _run_block(element.body, machine)
         return [machine.outputs[channel] for channel in range(element.outputs)]
     if isinstance(element, Matrix):
@@ -179,10 +190,10 @@ def _run_op(op: Op, machine: _Machine) -> None:
         stack += [UNARY[name](x) for x in machine.pop(n)]
     elif name in BINARY:
         values = machine.pop(2 * n)
-        stack += [BINARY[name](x, y) for x, y in zip(values[:n], values[n:], strict=True)]
+        stack += [machine.binary[name](x, y) for x, y in zip(values[:n], values[n:], strict=True)]
     elif name in SCALED:
         *vector, scalar = machine.pop(n + 1)
-        stack += [BINARY[SCALED[name]](x, scalar) for x in vector]
+        stack += [machine.binary[SCALED[name]](x, scalar) for x in vector]
     elif name in FOLDED:
         stack.append(FOLDED[name](machine.pop(n)))
     elif name in GROUPED:
@@ -194,7 +205,8 @@ def _run_op(op: Op, machine: _Machine) -> None:
         _move(op, machine)
     elif op.operator.operand is Operand.ELEMENT:
         element = machine.program.elements[n]
-        stack += _apply(element, machine.pop(element.inputs), machine.environment)
+        inputs = machine.pop(element.inputs)
+        stack += _apply(element, inputs, machine.environment, machine.binary)
     elif name == "env":
         value = _FIXED.get(op.signature, machine.environment.get(op.signature))
         defined = value is not None and op.signature != "ndef"

@@ -108,6 +108,9 @@ BINARY: dict[str, Kernel] = {
 }
 """(x, y) to one result, component by component; y is the block nearer the top."""
 
+IEEE: dict[str, Kernel] = {**BINARY, "div": np.divide}
+"""The same for engines that leave division by zero to the processor."""
+
 UNARY: dict[str, Kernel] = {
     "neg": np.negative,
     "sq": lambda x: x * x,

@@ -15,6 +15,7 @@ from brdfc.codegen.nodes import Node
 from brdfc.codegen.select import Binding, ChannelBinding, VariableBinding
 from brdfc.colour.difference import ciede2000
 from brdfc.engine.interpreter import run
+from brdfc.judge.directions import directions
 from brdfc.judge.graphs import Graphs
 from brdfc.judge.strata import Points
 from brdfc.lang.model import Quantity
@@ -54,18 +55,27 @@ class Judge:
         quantities: tuple[Quantity, ...],
         bindings: Mapping[str, Binding],
     ) -> None:
-        self.points = points
+        self.exact, self.points = exact, points
         self.truth, self.quick = _truth(exact, points)
-        self.known = np.asarray((np.abs(self.truth) < LARGEST).all(axis=-1))
         peaks = [evaluate(exact, at) for at in _at_peak(points, quantities)]
         peak = np.nanmax(np.abs(np.concatenate(peaks, axis=-1)), axis=-1, initial=0.0)
-        size = np.abs(self.truth)
-        self.counted = self.known[:, None] & (size >= SEEN * np.minimum(peak, LARGEST)[:, None])
-        self.counted &= size > FALSE_ZERO
-        with np.errstate(over="ignore", invalid="ignore"):
-            self.unit = np.spacing(np.abs(self.truth).astype(np.float32)).astype(np.float64)
+        self.seen = SEEN * np.minimum(peak, LARGEST)[:, None]
+        self._weigh()
         self.graphs = _graphs(points, bindings)
         self.usual = self.graphs.only(np.array([s == "uniform" for s in points.strata]))
+
+    def _weigh(self) -> None:
+        """Where the truth is known, where its digits count, and the unit in their last place."""
+        size = np.abs(self.truth)
+        self.known = np.asarray((size < LARGEST).all(axis=-1))
+        self.counted = self.known[:, None] & (size >= self.seen) & (size > FALSE_ZERO)
+        with np.errstate(over="ignore", invalid="ignore"):
+            self.unit = np.spacing(size.astype(np.float32)).astype(np.float64)
+
+    def confirm(self, index: int) -> None:
+        """Replace the truth at a point by its value in high precision."""
+        self.truth[index] = _precise(self.exact, self.points, range(index, index + 1))[0]
+        self._weigh()
 
     def shared_out(self, node: Node) -> Node:
         """A form's graph, with the share of the domain's pixels (uniform ones) in each branch."""
@@ -77,7 +87,7 @@ class Judge:
 
     def errors(self, node: Node) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The error of a form's graph at every point: in bits, and in CIEDE2000."""
-        bits, de = self._errors(self.graphs.values(node).astype(np.float64))
+        bits, de = self.errors_of(self.graphs.values(node).astype(np.float64))
         return bits.max(axis=-1), de
 
     def measure_program(self, program: Program, channels: NDArray[np.float32]) -> Measured | None:
@@ -100,7 +110,7 @@ class Judge:
         wide = result.astype(np.float64)
         if (self.known[:, None] & (wide == 0) & (np.abs(self.truth) > FALSE_ZERO)).any():
             return None
-        bits, de = self._errors(wide)
+        bits, de = self.errors_of(wide)
         counted = max(int(self.counted.sum()), 1)
         return Measured(
             float(bits.max()),
@@ -110,7 +120,7 @@ class Judge:
             int(bits.max(axis=-1).argmax()),
         )
 
-    def _errors(
+    def errors_of(
         self, result: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """(points, components) in bits, 0 where values do not count; (points,) in CIEDE2000."""
@@ -119,16 +129,26 @@ class Judge:
         return np.log2(1 + ulps), np.where(self.known, ciede2000(result, truth), 0.0)
 
 
-def _truth(exact: Expression, points: Points) -> tuple[NDArray[np.float64], bool]:
-    """The values of a formula, and whether float64 was good enough for them."""
-    quick = evaluate(exact, {name: v.astype(np.float64) for name, v in points.values.items()})
+def float64_suffices(exact: Expression, points: Points) -> bool:
+    """Whether float64 agrees with high precision to AGREEMENT at TRIED of the points."""
     some = range(0, points.count, max(1, points.count // TRIED))
-    truth, known = _precise(exact, points, some), quick[list(some)]
+    truth = _precise(exact, points, some)
+    at = {name: v[some.start :: some.step] for name, v in points.values.items()}
+    known = _quickly(exact, at)
     with np.errstate(all="ignore"):
         near = np.abs(known - truth) <= AGREEMENT * np.abs(truth)
-    if np.all(near | ~np.isfinite(truth) | (np.abs(truth) < FALSE_ZERO)):
-        return quick, True
+    return bool(np.all(near | ~np.isfinite(truth) | (np.abs(truth) < FALSE_ZERO)))
+
+
+def _truth(exact: Expression, points: Points) -> tuple[NDArray[np.float64], bool]:
+    """The values of a formula, and whether float64 was good enough for them."""
+    if float64_suffices(exact, points):
+        return _quickly(exact, points.values), True
     return _precise(exact, points, range(points.count)), False
+
+
+def _quickly(exact: Expression, values: Mapping[str, NDArray[np.float32]]) -> NDArray[np.float64]:
+    return evaluate(exact, {name: v.astype(np.float64) for name, v in values.items()})
 
 
 def _precise(exact: Expression, points: Points, which: range) -> NDArray[np.float64]:
@@ -142,14 +162,18 @@ def _precise(exact: Expression, points: Points, which: range) -> NDArray[np.floa
 def _at_peak(
     points: Points, quantities: tuple[Quantity, ...]
 ) -> list[dict[str, NDArray[np.float64]]]:
-    """The same points with all angles equal, where a specular lobe is highest: at the point's own
-    angle, and halfway to grazing."""
+    """The same points with the directions each other's mirror, where a specular lobe is highest: at
+    the point's own angle, and halfway to grazing."""
     values = {name: v.astype(np.float64) for name, v in points.values.items()}
-    angles = [q.name for q in quantities if q.type.is_angle]
-    if not angles:
+    of = directions(quantities)
+    if not of.zeniths:
         return [values]
-    own = values[angles[0]]
-    return [{**values, **dict.fromkeys(angles, at)} for at in (own, np.full_like(own, np.pi / 4))]
+    if of.full:
+        first, second = of.azimuths
+        values[second] = values[first] + np.pi
+    own = values[of.zeniths[0]]
+    angles = (own, np.full_like(own, np.pi / 4))
+    return [{**values, **dict.fromkeys(of.zeniths, at)} for at in angles]
 
 
 def _graphs(points: Points, bindings: Mapping[str, Binding]) -> Graphs:

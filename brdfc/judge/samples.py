@@ -6,6 +6,7 @@ roughness of 0.001 is a tenth of a degree wide. So the points come in strata, on
     corners   each quantity at an end of its range, in a pattern that reaches every pair of ends
     edges     most quantities at an end, or one float inside it (2^-24 of the range beside 0)
     mirror    angles nearly equal, or nearly opposite: the peak; every fourth pixel at its narrowest
+              (out of plane zeniths nearly equal, azimuths nearly opposite, or nearly equal)
     rim       angles near an end of their range: grazing
     uniform   anywhere; ranges over decades by decades
 """
@@ -19,6 +20,7 @@ from itertools import cycle, islice
 import numpy as np
 from numpy.typing import NDArray
 
+from brdfc.judge.directions import is_azimuth, wrapped
 from brdfc.lang.model import Quantity
 from brdfc.symbolic.intervals import Interval
 
@@ -65,17 +67,19 @@ def sample(
 @dataclass
 class _Source:
     """Where the values of one run come from. number: of the run in its stratum, or of the pixel;
-    centre: the first angle, which the others of the stratum mirror stay near."""
+    centre: the first angle, which the others of the stratum mirror stay near; turn: the first
+    azimuth, which the others stay opposite to."""
 
     random: np.random.Generator
     domain: Mapping[str, Interval]
     stratum: str
     number: int
     centre: float | None = None
+    turn: float | None = None
 
     def pixel(self, number: int) -> _Source:
         """The same for one pixel of the run: its angles stay near the run's."""
-        return _Source(self.random, self.domain, self.stratum, number, self.centre)
+        return _Source(self.random, self.domain, self.stratum, number, self.centre, self.turn)
 
     def values(self, quantity: Quantity, index: int) -> Values:
         """A value for each component of a quantity, the index-th of its kind."""
@@ -96,11 +100,13 @@ class _Source:
                 inside = np.where(ends == 0, step, np.nextafter(ends, ends[::-1]))
                 either: Values = random.choice(np.concatenate([ends, inside]), size=width)
                 return either
+            case "mirror" if is_azimuth(quantity):
+                return self.turned(ends)
             case "mirror" if angle:
                 return self.mirrored(ends)
             case "mirror" if self.number % 4 == 0 and _over_decades(ends):
                 return np.full(width, ends[0])
-            case "rim" if angle:
+            case "rim" if angle and not is_azimuth(quantity):
                 away = (ends[1] - ends[0]) * 10 ** random.uniform(-7, -1)
                 return random.choice([ends[0] + away, ends[1] - away], size=1)
         return _spread(random, ends, width)
@@ -116,10 +122,21 @@ class _Source:
         if self.centre is None:
             self.centre = float(random.uniform(ends[0], ends[1]))
             return np.array([self.centre], dtype=np.float32)
-        # Models differ in the sign of the mirror direction.
-        centre = self.centre if random.random() < 0.7 else -self.centre
+        # Models differ in the sign of the mirror direction; a zenith out of plane has none.
+        same = random.random() < 0.7 or -self.centre < ends[0]
+        centre = self.centre if same else -self.centre
         away = 10 ** random.uniform(-5, 0) * random.choice([-1.0, 1.0])
         return np.array([centre + (away if random.random() < 0.9 else 0.0)], dtype=np.float32)
+
+    def turned(self, ends: Values) -> Values:
+        random = self.random
+        if self.turn is None:
+            self.turn = float(random.uniform(ends[0], ends[1]))
+            return np.array([self.turn], dtype=np.float32)
+        centre = self.turn + (np.pi if random.random() < 0.7 else 0.0)
+        away = 10 ** random.uniform(-5, 0) * random.choice([-1.0, 1.0])
+        whole = np.array([centre + (away if random.random() < 0.9 else 0.0)])
+        return wrapped(whole).astype(np.float32)
 
 
 def _over_decades(ends: Values) -> bool:

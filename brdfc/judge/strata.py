@@ -3,7 +3,8 @@
 Drawn uniformly over floats, points call a form best that is 16.7 bits wrong at the peak: almost
 none of them lies in a narrow highlight. So they are drawn where reflectance models live: in the
 lobe (angles whose half difference is a few roughnesses), in the lobe at grazing incidence, in its
-tail, uniformly, and at the edges of the domain.
+tail, uniformly, and at the edges of the domain. Out of plane the lobe is where zeniths are as near
+and azimuths nearly opposite; some of its points are where they are equal, at retro-reflection.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from brdfc.judge.directions import Directions, directions, opposite, sideways
 from brdfc.lang.model import Quantity
 from brdfc.symbolic.intervals import Interval
 
@@ -76,22 +78,26 @@ def _stratum(
     for q in quantities:
         interval, shape = domain[q.name], (count, q.type.value.width)
         if stratum == "edges":
-            drawn[q.name] = _edges(random, interval, shape)
+            drawn[q.name] = edges(random, interval, shape)
         else:
-            drawn[q.name] = _inside(random, interval, shape)
-    angles = [q.name for q in quantities if q.type.is_angle]
+            drawn[q.name] = inside(random, interval, shape)
+    of = directions(quantities)
+    angles = of.zeniths
     rough = [q.name for q in quantities if q.type.name == "roughness"]
-    if reach is not None and len(angles) >= 2:
+    if reach is not None and of.pair:
         first = domain[angles[0]]
         if stratum == "grazing lobe":
             away = np.exp(random.uniform(math.log(2e-3), math.log(9e-2), (count, 1)))
             end = np.where(random.random((count, 1)) < 0.5, first.low + away, first.high - away)
             drawn[angles[0]] = np.clip(end, first.low, first.high).astype(np.float32)
         width = drawn[rough[0]].astype(np.float64) if rough else np.full((count, 1), 0.1)
-        for name in angles[1:]:
-            tilt = np.arctan(width * random.uniform(-reach, reach, (count, 1)))
-            near = drawn[angles[0]] + 2 * tilt
-            drawn[name] = np.clip(near, domain[name].low, domain[name].high).astype(np.float32)
+        tilt = np.arctan(width * random.uniform(-reach, reach, (count, 1)))
+        near = drawn[angles[0]] + 2 * tilt
+        other = domain[angles[1]]
+        drawn[angles[1]] = np.clip(near, other.low, other.high).astype(np.float32)
+        if of.full:
+            across = np.arctan(width * random.uniform(-reach, reach, (count, 1)))
+            _turn_opposite(random, domain, of, drawn, across)
     if stratum == "rim":
         # All angles within a thousandth of a degree to a tenth of the same end: what a sum of two
         # angles rounds away is then a large part of the distance to it.
@@ -110,7 +116,23 @@ def _stratum(
     return drawn
 
 
-def _inside(random: np.random.Generator, of: Interval, shape: tuple[int, int]) -> Values:
+def _turn_opposite(
+    random: np.random.Generator,
+    domain: Mapping[str, Interval],
+    of: Directions,
+    drawn: dict[str, Values],
+    tilt: NDArray[np.float64],
+) -> None:
+    """Put the second azimuth opposite the first, but for a tilt of the half vector sideways."""
+    first, second = of.azimuths
+    zenith = drawn[of.zeniths[1]].astype(np.float64)
+    turned = opposite(random, drawn[first], sideways(tilt, zenith))
+    ends = domain[second]
+    drawn[second] = np.clip(turned, ends.low, ends.high).astype(np.float32)
+
+
+def inside(random: np.random.Generator, of: Interval, shape: tuple[int, int]) -> Values:
+    """Anywhere in a range, uniformly."""
     if of.low > 0 and of.high / of.low > 30:  # a range over decades is drawn by decades
         drawn = np.exp(random.uniform(math.log(of.low), math.log(of.high), shape))
     else:
@@ -118,11 +140,11 @@ def _inside(random: np.random.Generator, of: Interval, shape: tuple[int, int]) -
     return np.clip(drawn, of.low, of.high).astype(np.float32)
 
 
-def _edges(random: np.random.Generator, of: Interval, shape: tuple[int, int]) -> Values:
+def edges(random: np.random.Generator, of: Interval, shape: tuple[int, int]) -> Values:
     """Both ends, the floats beside them, zero, and the inside, mixed."""
     ends = np.array([of.low, of.high], dtype=np.float32)
     choices = [*ends, *np.nextafter(ends, ends[::-1])]
     if of.low <= 0 <= of.high:
         choices.append(np.float32(0))
     picked = random.choice(np.array(choices, dtype=np.float32), size=shape)
-    return np.where(random.random(shape) < 0.75, picked, _inside(random, of, shape))
+    return np.where(random.random(shape) < 0.75, picked, inside(random, of, shape))

@@ -28,6 +28,11 @@ def library_files() -> dict[str, Path]:
     return {path.stem: path for path in sorted(library_folder().glob(f"*{SUFFIX}"))}
 
 
+def textbook_files() -> dict[str, Path]:
+    """The library's models as textbooks write them, by the name of the model."""
+    return {path.stem: path for path in sorted(library_folder().glob(f"textbook/*{SUFFIX}"))}
+
+
 def found_file(target: str, is_path: bool, folder: Path) -> Path:
     """The file that an import statement in a file of `folder` means.
 

@@ -18,6 +18,7 @@ from brdfc.lang.imports import (
     found_file,
     is_file,
     library_files,
+    textbook_files,
 )
 from brdfc.lang.limits import MAX_IMPORTS, MAX_TEXT
 from brdfc.lang.model import Model, Module
@@ -27,7 +28,15 @@ from brdfc.source.diagnostics import Diagnostic, did_you_mean
 from brdfc.source.errors import BrdfcError, ModelError
 from brdfc.source.span import Source
 
-__all__ = ["LibraryEntry", "library", "load", "load_file", "load_text", "parse_value"]
+__all__ = [
+    "LibraryEntry",
+    "library",
+    "load",
+    "load_file",
+    "load_text",
+    "parse_value",
+    "textbook_form",
+]
 
 
 @dataclass(frozen=True)
@@ -56,6 +65,13 @@ def load(reference: str | Path, geometry: str | Path | None = None) -> Model:
             hint=f"import it into a model: import {found.name} (...)",
         )
     return found
+
+
+def textbook_form(name: str | Path, geometry: str | Path | None = None) -> Model | None:
+    """A library model as textbooks write it, where the library has that: the same quantities, and
+    a formula whose digits nobody looked after."""
+    path = textbook_files().get(str(name))
+    return load(path, geometry) if path else None
 
 
 def load_file(reference: str | Path, geometry: str | Path | None = None) -> Model | Module:

@@ -46,6 +46,17 @@ def test_the_library_lists_itself(models: Path) -> None:
     ]
 
 
+def test_the_textbook_form_of_a_library_model_is_no_model_of_its_own(models: Path) -> None:
+    assert load.textbook_form("flat") is None
+    (models / "textbook").mkdir()
+    (models / "textbook" / "flat.brdf").write_text(MODEL.replace('"Flat"', '"As printed"'))
+    found = load.textbook_form("flat")
+    assert found is not None
+    assert found.title == "As printed"
+    assert list(library()) == ["flat", "shapes"]
+    assert load.textbook_form(models / "flat.brdf") is None
+
+
 @pytest.mark.parametrize(
     ("reference", "said"),
     [
