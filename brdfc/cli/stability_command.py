@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import click
 
-from brdfc.cli.options import pairs, whole_number
+from brdfc.cli.options import geometry_option, pairs, whole_number
 from brdfc.cli.search_options import end_progress, search_options, shown_progress
 
 
@@ -32,6 +32,7 @@ from brdfc.cli.search_options import end_progress, search_options, shown_progres
     metavar="N",
     help="Points whose error is measured: 20000 (default).",
 )
+@geometry_option
 @search_options
 def command(
     model: str,
@@ -40,6 +41,7 @@ def command(
     fixed: tuple[str, ...],
     points: int,
     judged: int,
+    geometry: str | None,
     optimize: str,
     max_error: str | None,
     effort: int | None,
@@ -54,7 +56,7 @@ def command(
     \b
     Example:
       brdfc stability ward -o ward.html
-      brdfc stability ward -o ward.csv --points 1e8
+      brdfc stability ward -o ward.csv --geometry full --points 1e8
       brdfc stability mine.brdf -o mine.html --against theirs.brdf
     """
     import time
@@ -69,8 +71,8 @@ def command(
     from brdfc.lang.load import load, textbook_form
 
     kind = chart_kind(output)  # a report that cannot be written is refused before the search
-    loaded = load(model)
-    rival = load(against) if against else textbook_form(model)
+    loaded = load(model, geometry)
+    rival = load(against, geometry) if against else textbook_form(model, geometry)
     compiled = compile_model(
         loaded,
         pairs(fixed, "--set"),
