@@ -81,7 +81,7 @@ def explore(
         found, more = _searched(problem, judge, effort, progress, regimes=True)
         candidates |= {e: c for e, c in more.items() if e not in candidates}
     # Where float64 is not good enough for the truth, its price limits how many points there are.
-    many = problem.points(MANY if judge.quick else 2 * FEW)
+    many = problem.final_points(MANY if judge.quick else 2 * FEW)
     strict = Judge(problem.exact, many, problem.quantities, problem.bindings)
     few = max(2, min(_FINALISTS, SCHEDULED // len(postorder(problem.graph(problem.start)))))
     finals = _finals(problem, strict, candidates, goal, few)

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from brdfc.codegen.nodes import Node
-from brdfc.codegen.select import Binding, select
+from brdfc.codegen.select import Binding, VariableBinding, select
+from brdfc.judge.samples import sample
 from brdfc.judge.strata import Points, points
 from brdfc.lang.model import Quantity
 from brdfc.symbolic.expression import Expression, walk
@@ -53,6 +54,15 @@ class Problem:
     def points(self, scale: int) -> Points:
         """Points of the domain in strata, scale for each share of them."""
         return points(self.ranges.domain, self.quantities, scale)
+
+    def final_points(self, scale: int) -> Points:
+        """The same, and those of the self-check: the form that is chosen must not fail it."""
+        variables = tuple(
+            q for q in self.quantities if isinstance(self.bindings[q.name], VariableBinding)
+        )
+        channels = tuple(q for q in self.quantities if q not in variables)
+        checked = sample(self.formula.domain, channels, variables)
+        return self.points(scale).joined(checked.points(), "self-check")
 
     def graph(self, e: Expression) -> Node:
         """The operators of a form, guarded."""

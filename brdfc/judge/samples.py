@@ -39,6 +39,16 @@ class Samples:
     runs: tuple[Mapping[str, float], ...]
     pixels: tuple[Mapping[str, Values], ...]
 
+    def points(self) -> dict[str, Values]:
+        """The values of every quantity at every pixel of every run, (points, components)."""
+        columns: dict[str, list[Values]] = {}
+        for run, pixels in zip(self.runs, self.pixels, strict=True):
+            count = len(next(iter(pixels.values())))
+            fixed = {n: np.full((count, 1), v, dtype=np.float32) for n, v in run.items()}
+            for name, values in {**pixels, **fixed}.items():
+                columns.setdefault(name, []).append(values)
+        return {name: np.concatenate(parts) for name, parts in columns.items()}
+
 
 def sample(
     domain: Mapping[str, Interval],

@@ -3,7 +3,7 @@
 Drawn uniformly over floats, points call a form best that is 16.7 bits wrong at the peak: almost
 none of them lies in a narrow highlight. So they are drawn where reflectance models live: in the
 lobe (angles whose half difference is a few roughnesses), in the lobe at grazing incidence, in its
-tail, uniformly, and at the edges of the domain. Out of plane the lobe is where zeniths are as near
+tail, around retro-reflection, uniformly, and at the edges of the domain. Out of plane the lobe is where zeniths are as near
 and azimuths nearly opposite; some of its points are where they are equal, at retro-reflection.
 """
 
@@ -31,6 +31,7 @@ STRATA: Mapping[str, tuple[int, float | None]] = {
     "tail": (1, 9.0),
     "uniform": (2, None),
     "edges": (2, None),
+    "retro": (1, 3.0),
 }
 FEW, MANY = 80, 800
 """Points a share: for guiding a search, and for judging what it found."""
@@ -46,6 +47,12 @@ class Points:
     @property
     def count(self) -> int:
         return len(self.strata)
+
+    def joined(self, more: Mapping[str, Values], stratum: str) -> Points:
+        """These points and more of them, which are a stratum of their own."""
+        values = {name: np.concatenate([v, more[name]]) for name, v in self.values.items()}
+        added = len(next(iter(values.values()))) - self.count
+        return Points(values, self.strata + (stratum,) * added)
 
 
 def points(
@@ -93,6 +100,8 @@ def _stratum(
         width = drawn[rough[0]].astype(np.float64) if rough else np.full((count, 1), 0.1)
         tilt = np.arctan(width * random.uniform(-reach, reach, (count, 1)))
         near = drawn[angles[0]] + 2 * tilt
+        if stratum == "retro" and not of.full:
+            near = -near
         other = domain[angles[1]]
         drawn[angles[1]] = np.clip(near, other.low, other.high).astype(np.float32)
         if of.full:

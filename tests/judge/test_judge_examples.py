@@ -6,7 +6,7 @@ import pytest
 
 from brdfc import load
 from brdfc.judge.examples import check_examples
-from brdfc.lang.load import load_text
+from brdfc.lang.load import library, load_text
 from brdfc.lang.model import Model
 from brdfc.source.errors import ModelError
 
@@ -60,6 +60,7 @@ def test_an_example_without_a_value_does_not_hold() -> None:
         check_examples(examples("example x=0 -> (0, 1, 0)\n"))
 
 
-@pytest.mark.parametrize("name", ["ward", "lambert", "ward_printed", "cook_torrance"])
+@pytest.mark.parametrize("name", [n for n, entry in library().items() if entry.kind == "model"])
 def test_the_library_holds(name: str) -> None:
     assert check_examples(load(name)) >= 3
+    assert check_examples(load(name, "full")) >= 1

@@ -15,9 +15,10 @@ from brdfc.lang.load import library
 
 MODELS = [name for name, entry in library().items() if entry.kind == "model"]
 VARIANTS = {
-    **{name: (name, {}, ()) for name in MODELS},
-    "ward_baked": ("ward", {"incident": "40deg", "reflection": "10deg"}, ()),
-    "ward_curved": ("ward", {}, ("incident", "reflection")),
+    **{name: (name, None, {}, ()) for name in MODELS},
+    **{f"{name}_full": (name, "full", {}, ()) for name in ("ward", "ggx_anisotropic", "eon")},
+    "ward_baked": ("ward", None, {"incident": "40deg", "reflection": "10deg"}, ()),
+    "ward_curved": ("ward", None, {}, ("incident", "reflection")),
 }
 
 
@@ -25,8 +26,8 @@ VARIANTS = {
 def test_calculator_text_and_bytes_are_as_kept(
     variant: str, golden: Callable[[str, str], None]
 ) -> None:
-    name, fixed, channels = VARIANTS[variant]
-    compiled = brdfc.compile(brdfc.load(name), fixed, channels)
+    name, geometry, fixed, channels = VARIANTS[variant]
+    compiled = brdfc.compile(brdfc.load(name, geometry), fixed, channels)
     digests = "".join(
         f"; {kind} {hashlib.sha256(profile.to_bytes()).hexdigest()}\n"
         for kind, profile in (("MID ", compiled.mid), ("MVIS", compiled.mvis))

@@ -73,7 +73,8 @@ def test_roles_follow_set_and_channel() -> None:
     roles = assign_roles(model, {"m": 0.2, "inci": "40deg"}, ["intensity"])
     assert [q.name for q in roles.channels] == ["Rd", "ks", "intensity"]
     assert [q.name for q in roles.variables] == ["reflection"]
-    assert roles.constants == {"m": (0.2,), "incident": (pytest.approx(math.radians(40)),)}
+    incident = (pytest.approx(math.radians(40)),)
+    assert roles.constants == {"m": (0.2,), "incident": incident, "mirror": (1.0,)}
 
 
 def test_python_values_are_checked_like_texts() -> None:

@@ -26,6 +26,9 @@ from random_expressions import (
 )
 
 from brdfc.codegen.select import select
+from brdfc.lang.load import load_text
+from brdfc.lang.model import Model
+from brdfc.symbolic.build import build
 from brdfc.symbolic.constants import fold_constants
 from brdfc.symbolic.evaluate import evaluate, evaluate_precisely
 from brdfc.symbolic.expression import ONE, PI, ZERO, Expression, component, const, make, vector
@@ -313,6 +316,23 @@ def test_a_chain_of_doublings_is_folded_quickly() -> None:
     for _ in range(40):
         e = make("sub", e, make("mul", e, e))
     assert 0 < fold_constants(e).value < Fraction(1, 3)
+
+
+def test_what_cancels_to_nothing_takes_no_digits_from_the_rest() -> None:
+    """Of an identity, (1 - cos^2) - sin^2 say, SymPy gives what is left of its working precision,
+    a number without digits, and takes its precision for that of all that is made of it."""
+    model = load_text(
+        'model t "T"\nchannel n : number in 1..100\n'
+        "let t2 = (tan(5deg)*sin(-87.5deg))^2 + (tan(35deg)*cos(-87.5deg))^2\n"
+        "let c2 = 1/(1 + t2)\n"
+        "let log = ln(c2) + ((1 - c2) - t2*c2)\n"
+        "let normal = (n + 2)*(n + 4)/(8*pi*(exp(-n/2*ln(2)) + n))\n"
+        "radiance = 0.2*normal*exp(n/2*min(log, 0))\n"
+    )
+    assert isinstance(model, Model)
+    whole = build(model.radiance, {"n": (60.0,)})
+    folded = evaluate_precisely(fold_constants(whole), {})
+    assert folded == pytest.approx(evaluate_precisely(whole, {}), rel=1e-13)
 
 
 # ------------------------------------------------------------ evaluation
