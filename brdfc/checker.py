@@ -17,12 +17,19 @@ from brdfc.icc.profile import Profile
 from brdfc.icc.types import Pipeline
 from brdfc.icc.validate import validate
 from brdfc.judge.examples import check_examples
-from brdfc.lang.load import load_file
-from brdfc.lang.model import Model
+from brdfc.lang.load import load, load_file
+from brdfc.lang.model import Breach, Law, Model
+from brdfc.laws.breaches import reproduce
+from brdfc.laws.claims import Claim, LawResult, shown
+from brdfc.laws.examine import examine
+from brdfc.laws.reflectance import Reflectance, in_full_geometry
 from brdfc.profiles.metadata import describe
 from brdfc.source.errors import BrdfcError
+from brdfc.symbolic.build import build
 
 OK, WARNING, ERROR, OPEN = "ok", "warning", "error", "open"
+EXPECTED = ("reciprocal", "positive")
+"""Laws of nature: a model that breaks one of them without a word deserves a warning."""
 
 
 @dataclass(frozen=True)
@@ -64,13 +71,59 @@ def check_model(name: str) -> Iterator[Finding]:
     )
     for guard in compiled.guards:
         yield Finding(OK, f"guard: {guard.reason}, in {guard.operation}")
-    for law in model.laws:
-        yield Finding(OPEN, f"law: {law} is claimed; laws are not checked yet")
+    yield from check_laws(load(name, "full") if model.geometry else model)
     with tempfile.TemporaryDirectory() as folder:
         for path in compiled.save(Path(folder) / "checked_mvis.icc"):
             kind = "MID" if path.name.endswith("mid.icc") else "MVIS"
             for finding in check_profile(path):
                 yield Finding(finding.status, f"{kind}: {finding.message}")
+
+
+def check_laws(model: Model) -> Iterator[Finding]:
+    """The laws a model claims, those it says it breaks, and those it should have spoken of.
+
+    model: in the full geometry, as albedos and both ways need all directions.
+    """
+    if not in_full_geometry(model):
+        for law in model.laws:
+            message = (
+                f"law: {law} is claimed; only a model in all directions can be held against it"
+            )
+            yield Finding(OPEN, f"{message} (import geometry)")
+        return
+    reflectance = Reflectance(model)
+    for law in model.laws:
+        found = examine(reflectance, _claim(law))
+        status = (OK if found.holds else ERROR) if found.settled else OPEN
+        hint = "; correct the formula, narrow the ranges, or say that the model breaks the law"
+        yield Finding(status, f"law: {found}{hint if status == ERROR else ''}")
+    worst: dict[str, LawResult] = {}
+    for breach in model.breaches:
+        claim = _claim(breach.law)
+        if str(claim) not in worst:
+            worst[str(claim)] = examine(reflectance, claim)
+        yield _breach(reflectance, breach, worst[str(claim)])
+    spoken_of = {law.name for law in (*model.laws, *(b.law for b in model.breaches))}
+    for law_name in EXPECTED:
+        if law_name not in spoken_of:
+            found = examine(reflectance, Claim(law_name))
+            said = "holds, but is not claimed" if found.holds else "is broken, and nothing says so"
+            yield Finding(OK if found.holds else WARNING, f"law: {law_name} {said}; {found}")
+
+
+def _claim(law: Law) -> Claim:
+    condition = law.condition and build(law.condition, {}, free=True)
+    return Claim(law.name, law.bound, law.quantities, condition, str(law))
+
+
+def _breach(reflectance: Reflectance, breach: Breach, worst: LawResult) -> Finding:
+    there = reproduce(reflectance, worst.claim, breach.given, breach.figure, breach.within)
+    said = f"breaks: {breach.law}: {there.figure:.6g} at {shown(breach.given, reflectance.angular)}"
+    if not there.breaks:
+        return Finding(ERROR, f"{said} does not break the law")
+    if not there.agrees:
+        return Finding(ERROR, f"{said}, and not {breach.figure:g}; correct the figure")
+    return Finding(OK, f"{said}, as stated; {worst}")
 
 
 def check_profile(path: str | Path) -> Iterator[Finding]:

@@ -18,6 +18,7 @@ ORDER = [
     "engine",
     "colour",
     "judge",
+    "laws",
     "icc",
     "profiles",
     "cmm",

@@ -42,18 +42,21 @@ _BINARY = {
 }
 
 
-def build(definition: Definition, values: Mapping[str, tuple[float, ...]]) -> Expression:
+def build(
+    definition: Definition, values: Mapping[str, tuple[float, ...]], *, free: bool = False
+) -> Expression:
     """The expression of a definition without parameters, usually a model's radiance.
 
     values: what is fixed at compile time, one number a component, angles in radians. Quantities
-    that are constants by role and absent from values take their default.
+    that are constants by role and absent from values take their default; free leaves them open.
     """
-    return _Builder(values).definition(definition)
+    return _Builder(values, free).definition(definition)
 
 
 @dataclass
 class _Builder:
     values: Mapping[str, tuple[float, ...]]
+    free: bool
     done: dict[int, Expression] = field(default_factory=dict)
     steps: int = 0
 
@@ -114,7 +117,7 @@ class _Builder:
 
     def quantity(self, symbol: Quantity) -> Expression:
         fixed = self.values.get(symbol.name)
-        if fixed is None and symbol.role is Role.CONSTANT:
+        if fixed is None and symbol.role is Role.CONSTANT and not self.free:
             fixed = symbol.default
         if fixed is None:
             return quantity(symbol.name, symbol.type.value.width)
