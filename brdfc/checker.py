@@ -112,7 +112,7 @@ def check_laws(model: Model) -> Iterator[Finding]:
 
 
 def _claim(law: Law) -> Claim:
-    condition = law.condition and build(law.condition, {}, free=True)
+    condition = build(law.condition, {}, free=True) if law.condition else None
     return Claim(law.name, law.bound, law.quantities, condition, str(law))
 
 
