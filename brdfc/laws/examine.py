@@ -28,8 +28,8 @@ GRAZING_ALBEDO = math.radians(0.01)
 """How near to the right angle the incidence of an albedo comes, in radians."""
 
 _POINTS = Effort(seeds=40_000, swept=10_000, starts=24, tries=24, rounds=24, kept=16)
-_ALBEDOS = Effort(seeds=250, swept=400, starts=12, tries=8, rounds=6, kept=24)
-_FINER = Effort(seeds=0, swept=0, starts=3, tries=8, rounds=8, kept=3)
+_ALBEDOS = Effort(seeds=250, swept=400, starts=8, tries=8, rounds=5, kept=16)
+_FINER = Effort(seeds=0, swept=0, starts=3, tries=10, rounds=10, kept=3)
 _ROUGHLY, _NEARLY = 2e-2, 1e-3
 """Tolerances of albedos while searching; the worst are computed again to TOLERANCE."""
 

@@ -80,14 +80,13 @@ def test_where_the_formula_has_no_value_it_is_not_positive() -> None:
 def test_energy_is_kept_or_broken() -> None:
     assert found("lambert", LAWFUL).worst == pytest.approx(1, abs=1e-5)
     assert found("lambert", LAWFUL).holds
-    wide = found("ward_gmd", LAWFUL)
+    wide = found("phong", LAWFUL)
     assert not wide.holds
     assert wide.worst == pytest.approx(2, abs=1e-2)
 
 
-@pytest.mark.parametrize("name", ["ward_gmd", "ggx"])
-def test_energy_is_kept_where_the_coefficients_share_it(name: str) -> None:
-    result = found(name, SHARED)
+def test_energy_is_kept_where_the_coefficients_share_it() -> None:
+    result = found("ward_gmd", SHARED)
     assert result.holds
     assert result.worst == pytest.approx(1, abs=1e-4)
     assert all(rd + result.at["ks"][0] <= 1 for rd in result.at["Rd"])
@@ -146,7 +145,7 @@ def test_what_is_found_is_said_in_one_line() -> None:
 
 
 def test_the_same_search_finds_the_same_point() -> None:
-    assert examine(reflectance("ward_gmd"), SHARED) == found("ward_gmd", SHARED)
+    assert examine(reflectance("lambert"), LAWFUL) == found("lambert", LAWFUL)
     assert examine(reflectance("ggx"), Claim("positive")) == found("ggx", Claim("positive"))
 
 
