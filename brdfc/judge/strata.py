@@ -3,8 +3,9 @@
 Drawn uniformly over floats, points call a form best that is 16.7 bits wrong at the peak: almost
 none of them lies in a narrow highlight. So they are drawn where reflectance models live: in the
 lobe (angles whose half difference is a few roughnesses), in the lobe at grazing incidence, in its
-tail, around retro-reflection, uniformly, and at the edges of the domain. Out of plane the lobe is where zeniths are as near
-and azimuths nearly opposite; some of its points are where they are equal, at retro-reflection.
+tail, around retro-reflection, uniformly, and at the edges of the domain. Out of plane the lobe is
+where zeniths are as near and azimuths nearly opposite; some of its points are where they are equal,
+at retro-reflection.
 """
 
 from __future__ import annotations
