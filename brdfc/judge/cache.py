@@ -95,8 +95,11 @@ def key(problem: Problem, goal: Goal, effort: int | None) -> str:
     costs = [[name, p.first, p.more] for name, p in table.operators.items()]
     rules = [[r.name, r.left, r.right, dict(r.needs), r.both] for r in RULES]
     bindings = [[name, repr(b)] for name, b in problem.bindings.items()]
+    judged_at = hashlib.sha256()
+    for values in problem.final_points(1).values.values():  # a few of each stratum stand for all
+        judged_at.update(values.tobytes())
     content = {
-        "version": [__version__, rules],
+        "version": [__version__, rules, judged_at.hexdigest()],
         "formula": to_data(problem.exact),
         "domain": [domain, quantities, bindings],
         "aim": [goal.kind, goal.limit, effort, table.dispatch, costs],

@@ -1,4 +1,4 @@
-"""What the library's models say of laws is so: every claim holds, every breach is as large as said."""
+"""What the library's models say of laws is so: claims hold, breaches are as large as said."""
 
 from __future__ import annotations
 
