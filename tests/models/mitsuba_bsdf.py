@@ -105,19 +105,24 @@ def rough_plastic(light: Array, viewer: Array, distribution: str, alpha: float, 
     )
 
 
-def plastic(light: Array, viewer: Array, R: float, n: float) -> Array:
-    """The body of reflectance R under a smooth interface of index n, without the mirror image."""
+def plastic(light: Array, viewer: Array, Rd: float, n: float) -> Array:
+    """The body of reflectance Rd under a smooth interface of index n, without the mirror image."""
     return evaluated(
         {
             "type": "plastic",
-            "diffuse_reflectance": grey(R),
+            "diffuse_reflectance": grey(Rd),
             "int_ior": n,
             "ext_ior": 1.0,
-            "nonlinear": True,  # what comes back from the interface meets R again
+            "nonlinear": True,  # what comes back from the interface meets Rd again
         },
         light,
         viewer,
     )
+
+
+def internal_reflectance(n: float) -> float:
+    """What `plastic` takes for diffuse light in index n: the fit of W. Egan, T. Hilgeman (1973)."""
+    return 0.0636 * n + 0.6681 + 0.7099 / n - 1.4399 / n**2
 
 
 def principled(light: Array, viewer: Array, base: float, **weights: float) -> Array:
@@ -154,9 +159,11 @@ def principled_tinted(
     specular: float,
     roughness: float,
     sheen: float,
+    clearcoat: float,
+    gloss: float,
 ) -> Array:
     """Fully tinted by a grey base, the lobe has Schlick's Fresnel term; untinted, the exact one."""
-    return principled(
+    rest = principled(
         light,
         viewer,
         base,
@@ -166,6 +173,7 @@ def principled_tinted(
         sheen=sheen,
         spec_tint=1.0,
     )
+    return rest + principled_clearcoat(light, viewer, clearcoat, gloss)
 
 
 def ward_gmd(light: Array, viewer: Array, alphax: float, alphay: float) -> Array:

@@ -55,6 +55,17 @@ def under_interface(
     return evaluated("Diffuse_Subsurface_BRDF_Model", parameters, light, viewer)
 
 
+def internal_reflectance(n: float) -> float:
+    """What `under_interface` takes for diffuse light in index n: a sum over angles inside, in
+    steps of 0.2°, weighted by sin(2 theta)."""
+    theta = np.radians(np.arange(451) * 0.2)
+    cosine, refracted = np.cos(theta), np.emath.sqrt(1.0 / n**2 - np.sin(theta) ** 2)
+    s = (cosine - refracted) / (cosine + refracted)
+    p = (cosine - n**2 * refracted) / (cosine + n**2 * refracted)
+    weight = np.sin(2.0 * theta)
+    return float((weight * (np.abs(s) ** 2 + np.abs(p) ** 2) / 2.0).sum() / weight.sum())
+
+
 def gaussian_facets(
     light: Array, viewer: Array, m: float, eta: float = 0.0, k: float = 1.0, shadow: str = "V"
 ) -> Array:
@@ -70,6 +81,11 @@ def cook_torrance_1982(light: Array, viewer: Array, m: float, F0: float) -> Arra
     """As printed, pi ci co under a D without its 1/pi: four times what energy balance wants."""
     n = (1.0 + math.sqrt(F0)) / (1.0 - math.sqrt(F0))
     return 4.0 * gaussian_facets(light, viewer, m, n, 0.0)
+
+
+def cook_torrance_ngan(light: Array, viewer: Array, m: float) -> Array:
+    """Of mirrors, with Ngan's pi² ci co in the same place."""
+    return 4.0 / math.pi * gaussian_facets(light, viewer, m)
 
 
 def two_gaussian_facets(
@@ -108,6 +124,21 @@ def ellipsoid_facets(
 def even_facets(light: Array, viewer: Array, eta: float, k: float) -> Array:
     """All slopes equally frequent (density 1), in V cavities: what is left is F G/(4 ci co c^4)."""
     return facets(light, viewer, {None: "Unit_Slope_Distribution_Function"}, eta, k, "V")
+
+
+def slopes(light: Array, viewer: Array, m: float) -> Array:
+    """The density of Gaussian slopes alone, as the quotient of such facets and even ones."""
+    return gaussian_facets(light, viewer, m, shadow="V") / even_facets(light, viewer, 0.0, 1.0)
+
+
+def ward(light: Array, viewer: Array, m: float) -> Array:
+    """Ward's normalisation, 1/(4 sqrt(ci co)), of the density of slopes."""
+    return slopes(light, viewer, m) / (4.0 * np.sqrt(light[:, 2] * viewer[:, 2]))
+
+
+def ward_duer(light: Array, viewer: Array, m: float) -> Array:
+    """The one of Dür, 1/(4 ci co)."""
+    return slopes(light, viewer, m) / (4.0 * light[:, 2] * viewer[:, 2])
 
 
 def facets(
