@@ -10,7 +10,7 @@ demo: .venv/installed
 	$(BIN)/python examples/demo.py
 
 test: lint
-	$(BIN)/pytest
+	$(BIN)/pytest -n 2 --dist loadfile
 
 lint: .venv/installed
 	$(BIN)/ruff check .
@@ -20,6 +20,8 @@ lint: .venv/installed
 figures: .venv/installed
 	$(BIN)/python benchmarks/figures.py
 	$(BIN)/python benchmarks/forms.py
+	$(BIN)/python benchmarks/library.py
+	$(BIN)/python benchmarks/stability.py
 
 golden: .venv/installed
 	$(BIN)/pytest --update-golden tests

@@ -12,11 +12,13 @@ from pathlib import Path
 
 import pytest
 
-# Searches are remembered for the whole run; the user's own cache and prices are left alone.
-os.environ["XDG_CACHE_HOME"] = tempfile.mkdtemp(prefix="brdfc-tests-")
-os.environ["XDG_CONFIG_HOME"] = os.environ["XDG_CACHE_HOME"]
-os.environ.pop("BRDFC_PRICES", None)
-atexit.register(shutil.rmtree, os.environ["XDG_CACHE_HOME"], ignore_errors=True)
+# Searches are remembered for the whole run, by all processes of it; the user's own cache and prices
+# are left alone.
+if "PYTEST_XDIST_WORKER" not in os.environ:
+    os.environ["XDG_CACHE_HOME"] = tempfile.mkdtemp(prefix="brdfc-tests-")
+    os.environ["XDG_CONFIG_HOME"] = os.environ["XDG_CACHE_HOME"]
+    os.environ.pop("BRDFC_PRICES", None)
+    atexit.register(shutil.rmtree, os.environ["XDG_CACHE_HOME"], ignore_errors=True)
 
 GOLDEN = Path(__file__).parent / "golden"
 

@@ -72,7 +72,10 @@ def test_reports_are_the_same_bytes_in_another_process(tmp_path: Path, kind: str
         (["-o", "r.csv", "--points", "inf"], "'inf' is no whole number"),
         (["-o", "r.csv", "--against", "lamber"], "did you mean 'lambert'?"),
         (["-o", "r.csv", "--against", "missing.brdf"], "cannot be read"),
-        (["-o", "r.csv", "--against", "ward"], "only one of the models has ks, m, reflection"),
+        (
+            ["-o", "r.csv", "--against", "ward"],
+            "only one of the models has ks, m, mirror, reflection",
+        ),
         (["-o", "r.csv", "--set", "m=0.1"], "has no quantity 'm'"),
     ],
 )

@@ -237,9 +237,10 @@ def test_out_of_plane_the_mirrors_side_is_the_positive_one() -> None:
 # ------------------------------------------------------------ the library's figures
 
 
-def line(name: str) -> str:
+def line(case: str) -> str:
     """A model's figures, rounded up: a small change of a sample is none of these."""
-    made = compile_model(load(name))
+    name, geometry = case.split("/")
+    made = compile_model(load(name, geometry))
     problem = problem_of(made.roles, made.formula)
     ours = [subject(name, made.program, problem)]
     row = overall(judge_strata(problem, ours, JUDGED, LINES), name)
@@ -250,7 +251,7 @@ def line(name: str) -> str:
     de = Decimal(f"{row.de.value:.12f}").normalize()
     de = de.quantize(Decimal(1).scaleb(de.adjusted()), ROUND_CEILING)
     return (
-        f"{name:<30} {bits:4.1f} bits  {float(de):.0e} CIEDE2000  {total.nan} NaN  "
+        f"{case:<35} {bits:4.1f} bits  {float(de):.0e} CIEDE2000  {total.nan} NaN  "
         f"{total.infinite} infinite  {total.negative} negative  {row.jumps} jumps\n"
     )
 
@@ -260,24 +261,29 @@ def kept_lines() -> dict[str, str]:
     return {one.split()[0]: one for one in text.splitlines(keepends=True)}
 
 
-MODELS = [name for name, entry in library().items() if entry.kind == "model"]
+CASES = [
+    f"{name}/{geometry}"
+    for name, entry in library().items()
+    if entry.kind == "model"
+    for geometry in ("plane", "full")
+]
 
 
-@pytest.mark.parametrize("name", MODELS)
-def test_no_figure_of_a_library_model_grows(name: str, request: pytest.FixtureRequest) -> None:
-    now, kept = line(name), kept_lines()
+@pytest.mark.parametrize("case", CASES)
+def test_no_figure_of_a_library_model_grows(case: str, request: pytest.FixtureRequest) -> None:
+    now, kept = line(case), kept_lines()
     if request.config.getoption("--update-golden"):
-        lines = {known: one for known, one in kept.items() if known in MODELS} | {name: now}
+        lines = {known: one for known, one in kept.items() if known in CASES} | {case: now}
         GOLDEN.write_text("".join(lines[n] for n in sorted(lines)), encoding="utf-8")
         return
-    assert name in kept, f"{GOLDEN.name} does not keep {name} yet: make golden"
+    assert case in kept, f"{GOLDEN.name} does not keep {case} yet: make golden"
     pattern = r"(\S+) (?:bits|CIEDE2000|NaN|infinite|negative|jumps)"
-    grown = zip(re.findall(pattern, now), re.findall(pattern, kept[name]), strict=True)
+    grown = zip(re.findall(pattern, now), re.findall(pattern, kept[case]), strict=True)
     worse = [f"{a} > {b}" for a, b in grown if float(a) > float(b)]
-    assert not worse, f"{name} has become less stable ({', '.join(worse)}):\n{kept[name]}{now}"
+    assert not worse, f"{case} has become less stable ({', '.join(worse)}):\n{kept[case]}{now}"
 
 
 def test_the_table_keeps_the_library_and_nothing_else(request: pytest.FixtureRequest) -> None:
     if request.config.getoption("--update-golden"):
         pytest.skip("golden files are being written, not compared")
-    assert sorted(kept_lines()) == sorted(MODELS)
+    assert sorted(kept_lines()) == sorted(CASES)

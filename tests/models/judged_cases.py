@@ -75,6 +75,16 @@ SMITH_ANISOTROPIC = {
 }
 SHADOWS = {"": "1/(cos_incident*cos_reflection)", "V": "v_cavity"}
 ENTERED = "(1 - dielectric(n, cos_incident))*(1 - dielectric(n, cos_reflection))/(pi*n^2)"
+INKS = (
+    (0.0001, 0.01, 0.8),
+    (0.01, 1.4, 0.8),
+    (0.01, 2.0, 0.8),
+    (1.0, 0.5, 0.8),
+    (10.0, 0.1, 0.3),
+)
+"""KS, SX and Rg: the first two take the series for thin layers, near one end and the other."""
+SERIES = 1e-8
+"""What the last term of that series leaves, 5e-9 where it ends."""
 LAYER = "kubelka_munk_layer(KS, SX, Rg)"
 REFLECTS_ALL: Parameters = {"eta": 0.0, "k": 1.0}
 LOBE: Parameters = {"Rd": 0, "ks": 1}
@@ -151,14 +161,17 @@ def scatmech_cases() -> Cases:
     cases.add(scatmech.lambertian, "lambert", {"Rd": 0.7})
     for w, b in ((0.9, 0.5), (0.3, -0.6), (0.999999, 0.0), (0.6, 0.9)):
         cases.add(scatmech.single_scatter, "lommel_seeliger", {"w": w, "b": b})
-    for KS, SX, Rg in ((0.0001, 0.01, 0.8), (0.01, 2.0, 0.8), (1.0, 0.5, 0.8), (10.0, 0.1, 0.3)):
+    for KS, SX, Rg in INKS:
         ink = {"KS": KS, "SX": SX, "Rg": Rg}
-        cases.add(scatmech.kubelka_munk, f"{LAYER}/pi", ink)
+        cases.add(scatmech.kubelka_munk, f"{LAYER}/pi", ink, tolerance=SERIES)
         for n in (1.2, 1.5, 2.5):
             body, inside = f"{ENTERED}*saunderson({LAYER}, k2)", scatmech.internal_reflectance(n)
-            cases.add(scatmech.under_interface, body, ink | {"n": n}, given={"k2": inside})
+            interface = ink | {"n": n}
+            cases.add(
+                scatmech.under_interface, body, interface, given={"k2": inside}, tolerance=SERIES
+            )
     for B, C in ((100.0, 2.0), (1e4, 0.3), (1e6, 0.8)):
-        lobe = "abc_smooth_lobe/dielectric(eta, sqrt(1 - tangential_difference2/4))"
+        lobe = "abc_smooth_lobe/dielectric(eta, sqrt(tangential_cosine2))"
         cases.add(scatmech.abc_lobe, lobe, {"B": B, "C": C}, width=0.1)
     for m in (0.003, 0.03, 0.1, 0.3, 0.8):
         slope = {"m": m}

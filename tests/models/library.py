@@ -79,7 +79,7 @@ channel r       : reflectance in 0..1     = 0.5 "perceptual roughness"
 channel sheen   : number      in 0..1     = 0   "grazing light of cloth"
 
 import geometry (visible, irradiance, cos_incident, cos_reflection, half_tangent2, half_sine2,
-  half_cosine2, difference_cosine, tangential_difference2)
+  half_cosine2, difference_cosine, tangential_cosine2)
 import fresnel (schlick, schlick_average, dielectric, index, conductor)
 import distributions (beckmann, beckmann_anisotropic, beckmann_exponential,
   beckmann_exponential_anisotropic, trowbridge_reitz, trowbridge_reitz_anisotropic,
