@@ -39,8 +39,8 @@ class Borrower:
         for statement in sorted(statements, key=lambda s: bool(s.names)):
             found = imported(statement)
             if found is None:
-                self._report.broken |= {name.alias for name in statement.names}
-                self._report.anything_goes |= not statement.names
+                # Names that nobody can list: of the other file, or of quantities that come along.
+                self._report.anything_goes = True
                 continue
             self.geometry = self.geometry or found.geometry
             bound = self._bindings(statement, found)

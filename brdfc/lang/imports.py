@@ -16,6 +16,8 @@ GEOMETRY = "geometry"
 """The import that stands for the geometry a model is read with."""
 DEFAULT_GEOMETRY = "plane"
 """The geometry where none is chosen: signed angles in the plane of incidence."""
+GEOMETRIES = (DEFAULT_GEOMETRY, "full")
+"""The library's geometries."""
 
 
 def library_folder() -> Path:

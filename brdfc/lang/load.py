@@ -13,6 +13,7 @@ from brdfc.files import read_file
 from brdfc.lang import tree
 from brdfc.lang.imports import (
     DEFAULT_GEOMETRY,
+    GEOMETRIES,
     GEOMETRY,
     SUFFIX,
     found_file,
@@ -37,6 +38,9 @@ __all__ = [
     "parse_value",
     "textbook_form",
 ]
+
+
+_HEADER = re.compile(r'^(model|module)\s+\w+\s+"([^"\n]*)"', re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -99,14 +103,27 @@ def library() -> dict[str, LibraryEntry]:
     found = {}
     for name, path in library_files().items():
         text = _source(path, str(path)).text
-        header = re.search(r'^(model|module)\s+\w+\s+"([^"\n]*)"', text, re.MULTILINE)
+        header = _HEADER.search(text)
         if header:
             found[name] = LibraryEntry(header[1], header[2], path)
     return found
 
 
-def _path(reference: str | Path, what: str = "model") -> Path:
-    """The file a user means."""
+def _geometry_path(reference: str | Path) -> Path:
+    """The file of the geometry a user means; BrdfcError where it is none."""
+    path = _path(reference, "geometry", GEOMETRIES)
+    header = _HEADER.search(_source(path, str(path)).text)
+    if header and header[1] == "model":
+        message = "this is a model, not a geometry"
+        hint = f"the library has the geometries {', '.join(GEOMETRIES)}"
+        raise BrdfcError(message, where=str(reference), hint=hint)
+    return path
+
+
+def _path(
+    reference: str | Path, what: str = "model", expected: tuple[str, ...] | None = None
+) -> Path:
+    """The file a user means. expected: the names to suggest, where those are not all."""
     path = Path(reference)
     named = isinstance(reference, str) and not (
         reference.endswith(SUFFIX) or "/" in reference or "\\" in reference
@@ -116,10 +133,11 @@ def _path(reference: str | Path, what: str = "model") -> Path:
     known = library_files()
     if str(reference) in known:
         return known[str(reference)]
-    listed = f"the library has: {', '.join(known)}" if known else None
+    names = expected or tuple(known)
+    listed = f"the library has: {', '.join(names)}" if names else None
     raise BrdfcError(
         f"there is no library {what} '{reference}'",
-        hint=did_you_mean(str(reference), known) or listed,
+        hint=did_you_mean(str(reference), names) or listed,
     )
 
 
@@ -145,7 +163,9 @@ class _Loader:
     """One load: the file asked for and all that it imports, each read and checked once."""
 
     def __init__(self, geometry: str | Path | None) -> None:
-        self._geometry = DEFAULT_GEOMETRY if geometry is None else geometry
+        self._geometry = library_files().get(DEFAULT_GEOMETRY)
+        if geometry is not None:
+            self._geometry = _geometry_path(geometry)
         self._diagnostics: list[Diagnostic] = []
         self._checked: dict[Path, Model | Module | None] = {}
         # The files being read, the outermost first: as they are found, and as they are shown.
@@ -184,8 +204,8 @@ class _Loader:
         """The file an import names; None where it has errors, or where there is none."""
         try:
             stands_for_geometry = statement.target == GEOMETRY and not statement.is_path
-            if stands_for_geometry:
-                path = _path(self._geometry, "geometry")
+            if stands_for_geometry and self._geometry is not None:
+                path = self._geometry
             else:
                 path = found_file(statement.target, statement.is_path, folder)
             resolved = path.resolve()

@@ -79,8 +79,14 @@ def test_a_model_with_angles_of_its_own_has_no_geometry_to_choose(tmp_path: Path
 
 
 def test_an_unknown_geometry() -> None:
-    with pytest.raises(ModelError, match="there is no library geometry 'fall'"):
-        load("ward", "fall")
+    with pytest.raises(BrdfcError, match="there is no library geometry 'fulll'") as raised:
+        load("ward", "fulll")
+    assert raised.value.hint == "did you mean 'full'?"
+
+
+def test_a_model_is_no_geometry() -> None:
+    with pytest.raises(BrdfcError, match="this is a model, not a geometry"):
+        load("ward", "ggx")
 
 
 def test_facts_count_in_the_geometry_they_are_stated_in() -> None:
