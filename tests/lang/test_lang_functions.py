@@ -21,7 +21,7 @@ def test_no_name_is_used_for_two_things() -> None:
     assert not FUNCTIONS.keys() & (MISSING.keys() | KEYWORDS | {PI})
 
 
-@pytest.mark.parametrize("function", FUNCTIONS.values(), ids=str)
+@pytest.mark.parametrize("function", FUNCTIONS.values(), ids=lambda function: function.name)
 def test_each_row(function: Function) -> None:
     parameters = function.signature.partition("(")[2].rstrip(")").split(", ")
     named = [parameter for parameter in parameters if parameter != "..."]
