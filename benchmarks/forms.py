@@ -33,11 +33,11 @@ from brdfc.cmm import reference
 from brdfc.colour.difference import ciede2000
 from brdfc.compiler import compile_model, explore_model, prepare
 from brdfc.engine.interpreter import run
-from brdfc.icc.types import Dictionary
 from brdfc.judge.measure import SEEN
 from brdfc.judge.strata import Points, points
 from brdfc.lang.load import load
 from brdfc.lang.model import Model, Quantity
+from brdfc.profiles.content import Content
 from brdfc.profiles.multiplex import profile_pair
 from brdfc.symbolic.evaluate import evaluate
 from brdfc.symbolic.intervals import Interval
@@ -49,6 +49,8 @@ INCIDENT, REFLECTION = 40, 30
 PIXELS, PASSES, ROUNDS = 20_000, 8, 6
 SCALE = 20_000
 """Points a share of the strata: 220,000 in all."""
+EQUAL = "equal"
+"""The literal transcriptions add the same highlight to X, Y and Z; so do what they are held to."""
 STEEPEST = math.radians(89.9)
 """Beyond it the literal programs, which have no guards, divide by nearly nothing."""
 
@@ -63,10 +65,10 @@ def speed() -> None:
     pixels = {}
     for name in MODELS:
         model = load(name)
-        compiled = compile_model(model)
+        compiled = compile_model(model, highlight=EQUAL)
         programs[name, "literal"] = literal(model)
         programs[name, "compiled"] = compiled.program
-        programs[name, "fixed"] = compile_model(model, angles).program
+        programs[name, "fixed"] = compile_model(model, angles, highlight=EQUAL).program
         pixels[name] = usual_pixels(compiled.roles.channels)
     least = timed(programs, pixels)
     print(f"Nanoseconds a pixel on the reference engine, least of {ROUNDS} rounds, MID and MVIS;")
@@ -106,7 +108,7 @@ def timed(
         pairs = {}
         for key, program in programs.items():
             names = [f"c{i}" for i in range(program.inputs)]
-            pair = profile_pair("timed", program, names, [0.0] * len(names), Dictionary(()))
+            pair = profile_pair(Content("timed", program, tuple(names), (0.0,) * len(names)))
             pairs[key] = pair.save(Path(folder) / f"{'_'.join(key)}_mvis.icc")
         for _ in range(ROUNDS):
             for key, (mid, mvis) in pairs.items():
@@ -197,7 +199,7 @@ def accuracy() -> None:
     for name in MODELS:
         at = sampled(name)
         text = (LITERAL / f"{name}.calc").read_text(encoding="utf-8")
-        before, after = worst(text, at), worst(compile_model(load(name)).text, at)
+        before, after = worst(text, at), worst(compile_model(load(name), highlight=EQUAL).text, at)
         print(f"  {name:<18} literal  {before}   ({at.points.count:,} points)")
         print(f"  {'':<18} compiled {after}   ({before.bits - after.bits:+.1f} bits better)")
 
@@ -209,7 +211,7 @@ def ward() -> None:
     ti, tr, m = (at.points.values[n][:, 0].astype(float) for n in ("incident", "reflection", "m"))
     lobe = np.exp(-((np.tan((ti - tr) / 2) / m) ** 2)) >= SEEN
     for goal in ("balanced", "accuracy"):
-        compiled = compile_model(load("ward"), optimize=goal)
+        compiled = compile_model(load("ward"), optimize=goal, highlight=EQUAL)
         everywhere, inside = worst(compiled.text, at), worst(compiled.text, at, lobe)
         count = operations(compiled.program)
         print(f"  {goal:<9} {count:3} operators: {everywhere}; in the lobe {inside.bits:.2f} bits")
@@ -222,7 +224,7 @@ def ggx() -> None:
     at = sampled("ggx", alpha=Interval(narrow, narrow))
     text = (LITERAL / "ggx.calc").read_text(encoding="utf-8")
     print(f"  literal  {worst(text, at).relative:.1e}")
-    print(f"  compiled {worst(compile_model(load('ggx')).text, at).relative:.1e}")
+    print(f"  compiled {worst(compile_model(load('ggx'), highlight=EQUAL).text, at).relative:.1e}")
 
 
 def splits() -> None:
@@ -242,12 +244,12 @@ def splits() -> None:
     angles = random.uniform(-math.pi / 2, math.pi / 2, (100, 2))
     runs = [{"inci": float(a), "refl": float(b)} for a, b in angles]
     print("\nward, the same error with and without a split by regime; spread over the domain")
-    explored = explore_model(model, optimize="accuracy")
+    explored = explore_model(model, optimize="accuracy", highlight=EQUAL)
     steps = [c for c in explored.derivation() if c.program is not None]
     for c, what in ((steps[-2], "careful everywhere"), (steps[-1], "split")):
         with tempfile.TemporaryDirectory() as folder:
             names = roles.channel_names
-            pair = profile_pair("timed", c.program, names, [0.0] * len(names), Dictionary(()))
+            pair = profile_pair(Content("timed", c.program, tuple(names), (0.0,) * len(names)))
             mid, mvis = pair.save(Path(folder) / "timed_mvis.icc")
             done = [reference.apply(mid, mvis, pixels, runs) for _ in range(ROUNDS)]
         took = min(float(d.seconds.mean()) for d in done) / PIXELS * 1e9

@@ -24,8 +24,8 @@ from brdfc.calc.prices import VARIABLE as PRICES
 from brdfc.calc.program import Program
 from brdfc.cmm import reference
 from brdfc.cmm.probes import CHANNELS, ELEMENTS, VARIABLE, formulas, pixels
-from brdfc.icc.types import Dictionary
 from brdfc.lang.load import library
+from brdfc.profiles.content import Content
 from brdfc.profiles.multiplex import ProfilePair, profile_pair
 from brdfc.source.errors import SelfCheckError
 
@@ -62,7 +62,7 @@ def at_random() -> Iterator[Case]:
     names = [f"c{k}" for k in range(CHANNELS)]
     for number, block in enumerate(formulas(3, 60), 1):
         program = Program(CHANNELS, 3, block, ELEMENTS)
-        pair = profile_pair("Formula", program, names, [0.0] * CHANNELS, Dictionary(()))
+        pair = profile_pair(Content("Formula", program, tuple(names), (0.0,) * CHANNELS))
         yield f"formula {number}", program, pair, pixels(PIXELS), {VARIABLE: 0.4}
 
 

@@ -19,6 +19,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from brdfc.cmm.link import Link as Link
     from brdfc.cmm.link import connect as connect
+    from brdfc.cmm.rendering import Rendering as Rendering
+    from brdfc.cmm.rendering import rendering as rendering
+    from brdfc.colour.conditions import ViewingConditions as ViewingConditions
+    from brdfc.colour.conditions import viewing_conditions as viewing_conditions
     from brdfc.compiler import Compiled as Compiled
     from brdfc.compiler import compile_model as compile  # noqa: F401
     from brdfc.icc.profile import Profile as Profile
@@ -32,10 +36,14 @@ _PLACES = {
     "BrdfcError": ("brdfc.source.errors", "BrdfcError"),
     "Compiled": ("brdfc.compiler", "Compiled"),
     "Link": ("brdfc.cmm.link", "Link"),
+    "Rendering": ("brdfc.cmm.rendering", "Rendering"),
+    "ViewingConditions": ("brdfc.colour.conditions", "ViewingConditions"),
     "Profile": ("brdfc.icc.profile", "Profile"),
     "compile": ("brdfc.compiler", "compile_model"),
     "connect": ("brdfc.cmm.link", "connect"),
     "load": ("brdfc.lang.load", "load"),
+    "rendering": ("brdfc.cmm.rendering", "rendering"),
+    "viewing_conditions": ("brdfc.colour.conditions", "viewing_conditions"),
 }
 
 __all__ = [*_PLACES, "__version__"]

@@ -166,7 +166,7 @@ def rivals(
     roles, ready = prepare(model, set, channels)
     problem = problem_of(roles, ready)
     many = points(problem.ranges.domain, problem.quantities, MANY)
-    judge = Judge(problem.exact, many, problem.quantities, problem.bindings)
+    judge = Judge(problem, many)
     return Rivals(roles, ready, problem, judge, explored.chosen.form.expression)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,8 +11,12 @@ from brdfc.calc.price import operations, price
 from brdfc.calc.prices import prices_in_use
 from brdfc.calc.program import Program
 from brdfc.calc.text import disassemble
+from brdfc.colour.colorimetry import XYZ_UNDER_D50, Colorimetry
+from brdfc.colour.conditions import ViewingConditions
+from brdfc.colours import Colours, bands, colours_of
 from brdfc.encodings import Encoding, encoded, encoding
 from brdfc.icc.profile import Profile
+from brdfc.icc.types import Dictionary
 from brdfc.judge.cache import Remembered, holds, key, note, recall, remember, steps_text, summary
 from brdfc.judge.examples import check_examples, examples_digest
 from brdfc.judge.explore import Explored, explore
@@ -21,14 +25,14 @@ from brdfc.judge.problem import Problem
 from brdfc.judge.samples import sample
 from brdfc.judge.selfcheck import LIMIT, Verdict, self_check
 from brdfc.lang.model import Model
+from brdfc.profiles.content import Content
 from brdfc.profiles.metadata import metadata, value_text
 from brdfc.profiles.multiplex import ProfilePair, profile_pair
 from brdfc.roles import Roles, Value, assign_roles
 from brdfc.source.errors import BrdfcError, SelfCheckError, ValueGivenError
-from brdfc.symbolic.formula import Formula, formula
+from brdfc.symbolic.formula import NO_WHITE, Formula, formula
 from brdfc.symbolic.guards import Guard, guarded
 
-XYZ_COMPONENTS = 3
 Progress = Callable[[int, int], None]
 
 
@@ -83,6 +87,8 @@ def compile_model(
     max_error: str | None = None,
     effort: int | None = None,
     encode: str = "calc",
+    conditions: ViewingConditions | None = None,
+    highlight: str | None = None,
     cache: bool = True,
     progress: Progress = _silent,
 ) -> Compiled:
@@ -93,15 +99,19 @@ def compile_model(
     come with each pixel instead. optimize: "speed", "balanced" or "accuracy"; max_error ("0.01dE",
     "8ulp") overrides it. effort: equivalent forms measured at most (None: about 300); 1 keeps the
     formula as it is written. encode: "calc", or with every variable fixed "clut:17" (a lookup
-    table) or "curve:1024" (a calculator with sampled curves). cache: use and keep searches on
+    table) or "curve:1024" (a calculator with sampled curves). conditions: the light and the
+    observer of the model's colours (None: D50, and the profile says no more). highlight: "light",
+    where a highlight without colour has the light's, or "equal", where it adds the same to X, Y
+    and Z (None: as the model says, most say the light's). cache: use and keep searches on
     disk. progress gets forms measured and the effort.
 
     Raises ModelError, ValueGivenError, or SelfCheckError when the program does not agree with the
     model.
     """
     aim, how = goal(optimize, max_error), encoding(encode)
-    roles, ready = prepare(model, set or {}, channels, cache)
-    problem = problem_of(roles, ready)
+    colours = colours_of(model, conditions, highlight)
+    roles, ready = prepare(model, set or {}, channels, cache, colours.formula_white)
+    problem = problem_of(roles, ready, colours.colorimetry)
     form = _search(problem, aim, effort, cache, progress)
     if form is not None and how.kind == "calc":
         program, guards = form.program, form.guards
@@ -113,13 +123,25 @@ def compile_model(
     samples = sample(ready.domain, roles.channels, roles.variables)
     limit = max(LIMIT, aim.limit if aim.kind == "de" else 0.0)
     try:
-        verdict = self_check(program, ready.exact, problem.bindings, samples, limit)
+        verdict = self_check(
+            program, ready.exact, problem.bindings, samples, limit, colours.colorimetry
+        )
     except SelfCheckError as error:
         if how.kind == "calc":
             raise
         hint = "take more points, or allow more with --max-error 0.1dE"
         raise SelfCheckError(error.message, hint=hint) from None
-    pair = _profiles(model, roles, program, cost, verdict, form, limit, how)
+    meta = _metadata(model, roles, colours, program, cost, verdict, form, limit, how)
+    content = Content(
+        model.title,
+        program,
+        roles.channel_names,
+        tuple(value for q in roles.channels for value in q.default),
+        meta,
+        colours.conditions,
+        colours.grid,
+    )
+    pair = profile_pair(content)
     return Compiled(model, roles, ready, aim, form, guards, program, cost, verdict, pair)
 
 
@@ -131,14 +153,17 @@ def explore_model(
     optimize: str = "balanced",
     max_error: str | None = None,
     effort: int | None = None,
+    conditions: ViewingConditions | None = None,
+    highlight: str | None = None,
     progress: Progress = _silent,
 ) -> Explored:
     """Every form of a model that a search finds, measured; arguments as for compile_model.
 
     Raises BrdfcError where every form fails.
     """
-    roles, ready = prepare(model, set or {}, channels)
-    problem = problem_of(roles, ready)
+    colours = colours_of(model, conditions, highlight)
+    roles, ready = prepare(model, set or {}, channels, white=colours.formula_white)
+    problem = problem_of(roles, ready, colours.colorimetry)
     aim = goal(optimize, max_error)
     found = explore(problem, aim, effort or problem.default_effort, progress, thorough=True)
     if found is None:
@@ -150,13 +175,18 @@ def explore_model(
 
 
 def prepare(
-    model: Model, set: Mapping[str, Value], channels: Iterable[str], cache: bool = False
+    model: Model,
+    set: Mapping[str, Value],
+    channels: Iterable[str],
+    cache: bool = False,
+    white: Sequence[float] = NO_WHITE,
 ) -> tuple[Roles, Formula]:
     """The roles of the quantities, and the formula with its constants in, examples checked.
 
-    cache: examples that held before, of the same formula, are not evaluated again.
+    cache: examples that held before, of the same formula, are not evaluated again. white: that the
+    model's colours are under (see symbolic/white.py).
     """
-    roles = assign_roles(model, set, channels)
+    roles = assign_roles(model, set, channels, white)
     if not roles.channels:
         raise ValueGivenError(
             "no channel is left: a profile needs one value a pixel at least",
@@ -167,21 +197,21 @@ def prepare(
         check_examples(model)
         if cache:
             note(name)
-    ready = formula(model, roles.constants)
-    if ready.width != XYZ_COMPONENTS:
+    ready = formula(model, roles.constants, white)
+    needed = bands(model)
+    if ready.width != needed:
         raise BrdfcError(
-            f"the radiance of '{model.name}' has {ready.width} components; XYZ needs 3",
+            f"the radiance of '{model.name}' has {ready.width} components; {needed} are needed",
             where=str(model.radiance.span),
             hint="a colourless radiance y is written (y, y, y)" if ready.width == 1 else None,
         )
     return roles, ready
 
 
-def problem_of(roles: Roles, ready: Formula) -> Problem:
+def problem_of(roles: Roles, ready: Formula, colorimetry: Colorimetry = XYZ_UNDER_D50) -> Problem:
     """What a search for forms needs to know."""
-    return Problem(
-        ready, roles.channels + roles.variables, roles.bindings(), len(roles.channel_names)
-    )
+    quantities, count = roles.channels + roles.variables, len(roles.channel_names)
+    return Problem(ready, quantities, roles.bindings(), count, colorimetry)
 
 
 def _search(
@@ -200,16 +230,17 @@ def _search(
     return found
 
 
-def _profiles(
+def _metadata(
     model: Model,
     roles: Roles,
+    colours: Colours,
     program: Program,
     cost: float,
     verdict: Verdict,
     form: Remembered | None,
     limit: float,
     how: Encoding,
-) -> ProfilePair:
+) -> Dictionary:
     types = {q.name: q.type for q in model.quantities}
     constants = {n: value_text(v, types[n]) for n, v in roles.constants.items()}
     facts = {
@@ -217,6 +248,7 @@ def _profiles(
         "selfcheck": f"CIEDE2000 below {limit:g} at {verdict.points} points of the domain",
         "encoding": str(how),
         "compiler": f"brdfc {__version__}",
+        **colours.facts(),
     }
     table = prices_in_use()
     if table is not None:  # another table may choose another form, so the profile says so
@@ -227,6 +259,4 @@ def _profiles(
         facts["form.error"] = (
             f"{last.bits:.1f} bits, CIEDE2000 {last.de:.0e} at worst of {form.points} points"
         )
-    meta = metadata(model, roles.channels, roles.variables, constants, facts)
-    defaults = [value for q in roles.channels for value in q.default]
-    return profile_pair(model.title, program, roles.channel_names, defaults, meta)
+    return metadata(model, roles.channels, roles.variables, constants, facts)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from brdfc.codegen.select import Binding, ChannelBinding, VariableBinding
 from brdfc.lang.model import Model, Quantity, Role
@@ -12,6 +12,7 @@ from brdfc.lang.values import parse_value
 from brdfc.profiles.metadata import range_text, value_text
 from brdfc.source.diagnostics import did_you_mean
 from brdfc.source.errors import ValueGivenError
+from brdfc.symbolic.formula import NO_WHITE
 
 Value = float | str | Sequence[float]
 """What a quantity may be fixed to: numbers, radians for angles, or text as on the command line."""
@@ -42,8 +43,15 @@ class Roles:
         return bound
 
 
-def assign_roles(model: Model, set: Mapping[str, Value], channels: Iterable[str]) -> Roles:
-    """Which quantity is what, after --set and --channel; ValueGivenError for what cannot be."""
+def assign_roles(
+    model: Model,
+    set: Mapping[str, Value],
+    channels: Iterable[str],
+    white: Sequence[float] = NO_WHITE,
+) -> Roles:
+    """Which quantity is what, after --set and --channel, where colours are measured under a white;
+    ValueGivenError for what cannot be."""
+    model = replace(model, quantities=tuple(q.under(white) for q in model.quantities))
     fixed = {}
     for name, value in set.items():
         q = _quantity(model, name)

@@ -90,7 +90,8 @@ def main() -> None:
         radians = {"incident": math.radians(incident), "reflection": math.radians(reflection)}
         link = brdfc.connect(mid, mvis, env=radians)
         target = folder / f"xyz_{incident}_{reflection}.tif"
-        apply_to_tiff(link, source, target, f"XYZ, incident {incident}, reflection {reflection}")
+        run = f"incident={incident}deg, reflection={reflection}deg"
+        apply_to_tiff(brdfc.rendering(link), source, target, run)
         xyz = tifffile.imread(target)
         run = {"inci": np.float32(radians["incident"]), "refl": np.float32(radians["reflection"])}
         angles = {"incident": run["inci"], "reflection": run["refl"]}

@@ -1,9 +1,10 @@
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from brdfc.cli.colour_options import stated_viewing, viewing_options
 from brdfc.cli.options import geometry_option, pairs
 from brdfc.cli.search_options import end_progress, search_options, shown_progress
 
@@ -37,6 +38,19 @@ if TYPE_CHECKING:
     help="A calculator program (default), a lookup table of N points a channel, or a calculator "
     "with curves of N points; the last two need every variable fixed with --set.",
 )
+@click.option(
+    "--spectral",
+    metavar="FROM..TO,STEP",
+    help="Reflectances at wavelengths in place of X, Y, Z: 400nm..700nm,10nm. The MVIS leads to "
+    "reflectances as well as to XYZ.",
+)
+@viewing_options
+@click.option(
+    "--highlight",
+    metavar="light|equal",
+    help="A highlight without colour has the light's colour, or adds the same to X, Y and Z. "
+    "Default: as the model says; most say the light's.",
+)
 @geometry_option
 @search_options
 @click.option("--explain", is_flag=True, help="Show how the chosen form was derived.")
@@ -49,12 +63,15 @@ def command(
     channels: tuple[str, ...],
     asm: str | None,
     encode: str,
+    spectral: str | None,
+    highlight: str | None,
     geometry: str | None,
     optimize: str,
     max_error: str | None,
     effort: int | None,
     explain: bool,
     no_cache: bool,
+    **viewing: Any,
 ) -> None:
     """Compile MODEL, a .brdf file or a library model, to a MID and an MVIS profile.
 
@@ -68,20 +85,25 @@ def command(
       brdfc compile ward -o baked_mvis.icc --set incident=40deg --set reflection=10deg
       brdfc compile ward -o curved_mvis.icc --channel incident --channel reflection
       brdfc compile ward -o exact_mvis.icc --optimize accuracy --explain
+      brdfc compile ward -o lamp_mvis.icc --white 0.97,1,0.484
+      brdfc compile ward -o spectral_mvis.icc --spectral 400nm..700nm,10nm --illuminant A
     """
     from brdfc.calc.price import operations
     from brdfc.compiler import compile_model
     from brdfc.files import write_whole
     from brdfc.lang.load import load
 
+    conditions = stated_viewing(**viewing)
     compiled = compile_model(
-        load(model, geometry),
+        load(model, geometry, spectral),
         pairs(fixed, "--set"),
         channels,
         optimize=optimize,
         max_error=max_error,
         effort=effort,
         encode=encode,
+        conditions=conditions,
+        highlight=highlight,
         cache=not no_cache,
         progress=shown_progress,
     )
@@ -90,9 +112,12 @@ def command(
     if asm:
         write_whole(asm, compiled.text.encode())
     verdict, program = compiled.verdict, compiled.program
-    click.echo(f"channels     {' '.join(compiled.roles.channel_names)}")
+    click.echo(f"channels     {_short(' '.join(compiled.roles.channel_names), 200)}")
     names = [f"{q.name} ({q.signature})" for q in compiled.roles.variables]
     click.echo(f"variables    {', '.join(names) or 'none'}")
+    if conditions is not None:
+        made = "; its spectrum is made from the white" if conditions.lamp_made else ""
+        click.echo(f"light        {conditions}{made}")
     click.echo(
         f"program      {operations(program)} operators, about {compiled.price:.0f} ns "
         f"a pixel on the reference engine; stack {verdict.facts.stack}, "
@@ -121,6 +146,8 @@ def _show_form(compiled: Compiled, explain: bool) -> None:
         f"             worst {last.bits:.1f} bits, CIEDE2000 {last.de:.1e} at {form.points:,} "
         f"points; {compiled.goal}, of {form.forms} forms"
     )
+    if not compiled.goal.accepts(last):
+        click.echo("note: no form reaches that; this is the most accurate that was found", err=True)
     if explain:
         for step in form.derivation:
             if step.rule:
@@ -132,5 +159,5 @@ def _show_form(compiled: Compiled, explain: bool) -> None:
             )
 
 
-def _short(text: str) -> str:
-    return text if len(text) <= 60 else text[:57] + "..."
+def _short(text: str, most: int = 60) -> str:
+    return text if len(text) <= most else text[: most - 3] + "..."

@@ -1,16 +1,18 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 import click
 
-from brdfc.cli.options import connected, environment_option, warn_of_defaults
+from brdfc.cli.colour_options import rendered, rendering_options
+from brdfc.cli.options import environment_option, warn_of_defaults
 
 
 @click.command("eval")
-@click.argument("mid")
-@click.argument("mvis")
+@click.argument("profiles", nargs=-1, required=True, metavar="PROFILE...")
 @environment_option
+@rendering_options
 @click.option(
     "--pixel",
     "pixels",
@@ -21,23 +23,30 @@ from brdfc.cli.options import connected, environment_option, warn_of_defaults
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def command(
-    mid: str, mvis: str, environment: tuple[str, ...], pixels: tuple[str, ...], as_json: bool
+    profiles: tuple[str, ...],
+    environment: tuple[str, ...],
+    pixels: tuple[str, ...],
+    as_json: bool,
+    **how: Any,
 ) -> None:
-    """Evaluate pixels through a MID and an MVIS: X, Y, Z with 9 digits, a line a pixel.
+    """Evaluate pixels through a MID and an MVIS, or through one profile whose device values they
+    are: X, Y, Z with 9 digits, a line a pixel, unless --to says otherwise.
 
     \b
     Example:
       brdfc eval ward_mid.icc ward_mvis.icc --env incident=40deg --env reflection=-10deg \\
             --pixel 0.1,0.2,0.6,0.05,0.15
+      brdfc eval ward_mid.icc ward_mvis.icc --pixel 0.1,0.2,0.6,0.05,0.15 --to Lab --adapt D65
     """
-    link = connected(mid, mvis, environment)
+    chosen = rendered(profiles, environment, **how)
+    link = chosen.link
     warn_of_defaults(link)
-    xyz = link.apply([_numbers(pixel, link.channels) for pixel in pixels])
+    values = chosen.apply([_numbers(pixel, link.channels) for pixel in pixels])
     if as_json:
-        rows = [[float(f"{v:.9g}") for v in row] for row in xyz.tolist()]
-        click.echo(json.dumps({"channels": link.channels, "xyz": rows}))
+        rows = [[float(f"{v:.9g}") for v in row] for row in values.tolist()]
+        click.echo(json.dumps({"channels": link.channels, chosen.to.value.lower(): rows}))
         return
-    for row in xyz.tolist():
+    for row in values.tolist():
         click.echo(" ".join(f"{value:.9g}" for value in row))
 
 

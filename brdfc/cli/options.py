@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -63,26 +63,34 @@ def environment_option(function: Callable[..., Any]) -> Callable[..., Any]:
     )(function)
 
 
-def connected(mid: str, mvis: str, environment: Iterable[str]) -> Link:
-    """MID and MVIS linked, variables read in the units the profile declares."""
-    from brdfc.cmm.link import connect, transform_variables
+def connected(
+    profiles: Sequence[str], environment: Iterable[str], transform: str | None = None
+) -> Link:
+    """Profiles linked, variables read in the units that the last declares.
+
+    transform: the tag of the last to use, see cmm.link.connect.
+    """
+    from brdfc.cmm.link import connect, device_transform, transform_variables
     from brdfc.icc.profile import Profile
     from brdfc.lang.types import TYPES
     from brdfc.lang.values import parse_value
 
-    first, second = Profile.load(mid), Profile.load(mvis)
+    loaded = [Profile.load(path) for path in profiles]
     given = pairs(environment, "--env")
     types = {}
-    for signature, described in transform_variables(second) if given else ():
-        types[signature] = described.type if described else None
-        if described:
-            types[described.name] = described.type
+    if given:
+        last = loaded[-1]
+        usual = transform or ("M2B0" if len(loaded) > 1 else device_transform(last))
+        for signature, described in transform_variables(last, usual):
+            types[signature] = described.type if described else None
+            if described:
+                types[described.name] = described.type
     values = {}
     for name, text in given.items():
         # A foreign profile does not say what its variables are; the unit the user writes does.
         declared = types.get(name) or TYPES["angle" if text[-3:] in ("deg", "rad") else "number"]
         values[name] = parse_value(text, declared, name)[0]
-    return connect(first, second, env=values)
+    return connect(*loaded, env=values, transform=transform)
 
 
 def warn_of_defaults(link: Link) -> None:

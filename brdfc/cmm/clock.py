@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from brdfc.calc.program import Block, Op, Program, Select
 from brdfc.cmm import reference
 from brdfc.cmm.probes import CHANNELS, ELEMENTS, EMPTY, VARIABLE, pixels
-from brdfc.icc.types import Dictionary
+from brdfc.profiles.content import Content
 from brdfc.profiles.multiplex import profile_pair
 
 _Array = NDArray[np.float64]
@@ -56,7 +56,7 @@ class ReferenceClock:
 
     def _times(self, program: Program, runs: Sequence[Mapping[str, float]]) -> _Array:
         names = [f"c{k}" for k in range(program.inputs)]
-        pair = profile_pair("Prices", program, names, [0.0] * len(names), Dictionary(()))
+        pair = profile_pair(Content("Prices", program, tuple(names), (0.0,) * len(names)))
         values = pixels(self.pixels)
         with tempfile.TemporaryDirectory() as folder:
             mid, mvis = pair.save(Path(folder) / "prices_mvis.icc")

@@ -1,8 +1,9 @@
-"""A MID and an MVIS, connected: samples of an image in, XYZ out.
+"""Profiles connected: samples of an image in, values of a connection space out.
 
-Channels connect by name, byte for byte. One the MID lacks takes the MVIS's default (`mdv `), or 0.
-The reference engine connects profiles with no name in common at all, silently; here that is an
-error.
+A MID and an MVIS connect by the names of their channels, byte for byte. A channel that the MID
+lacks takes the MVIS's default (`mdv `), or 0. The reference engine connects profiles with no name
+in common at all, silently; here that is an error. A profile of device values, such as one with the
+angles among its channels, needs no other.
 """
 
 from __future__ import annotations
@@ -25,52 +26,99 @@ from brdfc.source.diagnostics import did_you_mean
 from brdfc.source.errors import LinkError, ProgramError, ValueGivenError
 
 ProfileOrPath = Profile | str | Path
+Values = NDArray[np.float32]
+
+DEVICE_TRANSFORMS = ("A2B1", "A2B0", "A2B3")
+"""Of a profile of device values the first of these: its colours are media-relative."""
+
+
+@dataclass(frozen=True)
+class Route:
+    """From the channels of a MID to those of an MVIS.
+
+    sources: for each channel of the MVIS the index of the MID's, or None where it takes its
+    default.
+    """
+
+    sources: tuple[int | None, ...]
+    defaults: tuple[float, ...]
+
+    def apply(self, values: Values) -> Values:
+        shape = values.shape[:-1]
+        columns = [
+            values[..., source] if source is not None else np.full(shape, default, np.float32)
+            for source, default in zip(self.sources, self.defaults, strict=True)
+        ]
+        return np.stack(columns, axis=-1)
 
 
 @dataclass(frozen=True)
 class Link:
-    """Two connected profiles with the variables of a run.
+    """Connected profiles with the variables of a run.
 
-    channels: the names of the samples of a pixel. sources: for each channel of the MVIS the
-    index of the MID's channel, or None where it takes its default. defaulted: the names of those.
+    channels: the names of the samples of a pixel. profile: the last, in whose connection space the
+    values are; transform: the tag that leads there. defaulted: the names of the channels that take
+    their default. described: what the first says of its channels.
     """
 
     channels: tuple[str, ...]
-    first: Pipeline
-    second: Pipeline
-    sources: tuple[int | None, ...]
-    defaults: tuple[float, ...]
+    steps: tuple[Pipeline | Route, ...]
+    profile: Profile
+    transform: str
     defaulted: tuple[str, ...]
     environment: Mapping[str, float]
     described: tuple[Described, ...]
 
-    def apply(self, pixels: ArrayLike) -> NDArray[np.float32]:
-        """XYZ (..., 3), float32, for pixels (..., channels); Y is 1 for white.
+    @property
+    def outputs(self) -> int:
+        """Values of a colour: 3 for XYZ, one a wavelength for reflectances."""
+        last = self.steps[-1]
+        assert isinstance(last, Pipeline)
+        return last.outputs
+
+    def apply(self, pixels: ArrayLike) -> Values:
+        """Colours (..., outputs), float32, for pixels (..., channels); a white has Y = 1, or
+        reflectances of 1.
 
         Raises ProgramError when the last axis has another length.
         """
-        connected = _run(self.first, pixels, self.environment)
-        shape = connected.shape[:-1]
-        columns = [
-            connected[..., source] if source is not None else np.full(shape, default, np.float32)
-            for source, default in zip(self.sources, self.defaults, strict=True)
-        ]
-        return _run(self.second, np.stack(columns, axis=-1), self.environment)
+        values = np.asarray(pixels, dtype=np.float32)
+        for step in self.steps:
+            if isinstance(step, Route):
+                values = step.apply(values)
+            else:
+                values = run_pipeline(step, values, self.environment)
+        return values
 
 
 def connect(
-    mid: ProfileOrPath, mvis: ProfileOrPath, env: Mapping[str, float] | None = None
+    *profiles: ProfileOrPath,
+    env: Mapping[str, float] | None = None,
+    transform: str | None = None,
 ) -> Link:
-    """Connect a MID to an MVIS.
+    """Connect a MID to an MVIS, or make ready a single profile of device values.
 
     env: variables of the run, by the model's name or by four-letter signature, in radians for
-    angles. Raises ProfileError for what is no profile, LinkError for profiles that do not
-    connect, ValueGivenError for variables that do not exist or are outside their range.
+    angles. transform: the tag of the last profile to use: "M2B0" (the usual one) or "M2S0" of an
+    MVIS, "A2B1" or "bAB0" of a profile of device values.
+    Raises ProfileError for what is no profile, LinkError for profiles that do not connect,
+    ValueGivenError for variables that do not exist or are outside their range.
     """
-    source, destination = _profile(mid), _profile(mvis)
+    loaded = [_profile(p) for p in profiles]
+    if len(loaded) == 1:
+        return _single(loaded[0], env or {}, transform)
+    if len(loaded) != 2:
+        raise LinkError(
+            f"{len(loaded)} profiles do not connect",
+            hint="give a MID and an MVIS, or one profile of device values",
+        )
+    return _pair(loaded[0], loaded[1], env or {}, transform or "M2B0")
+
+
+def _pair(source: Profile, destination: Profile, env: Mapping[str, float], transform: str) -> Link:
     _check_class(source, "mid ", "first", "a MID")
     _check_class(destination, "mvis", "second", "an MVIS")
-    first, second = _pipeline(source, "A2M0"), _pipeline(destination, "M2B0")
+    first, second = pipeline(source, "A2M0"), pipeline(destination, transform)
     given, wanted = _names(source), _names(destination)
     if (len(given), len(wanted)) != (first.outputs, second.inputs):
         raise LinkError("the channel names ('mcta') do not match the transforms' channels")
@@ -84,25 +132,50 @@ def connect(
     values = defaults.values if isinstance(defaults, NumberArray) else (0.0,) * len(wanted)
     if len(values) != len(wanted):
         raise LinkError(f"{len(values)} defaults ('mdv ') for {len(wanted)} channels")
-    described = describe(source, "channel")
-    channels = given if first.inputs == len(given) else tuple(map(str, range(first.inputs)))
     return Link(
-        channels,
-        first,
-        second,
-        sources,
-        values,
+        given if first.inputs == len(given) else tuple(map(str, range(first.inputs))),
+        (first, Route(sources, values), second),
+        destination,
+        transform,
         tuple(n for n, index in zip(wanted, sources, strict=True) if index is None),
-        _environment(destination, env or {}),
-        described,
+        _environment(destination, transform, env),
+        describe(source, "channel"),
     )
 
 
-def transform_variables(mvis: Profile) -> tuple[tuple[str, Described | None], ...]:
-    """The variables an MVIS's transform reads: signature, and its description if it has one."""
-    described = {d.signature: d for d in describe(mvis, "env")}
+def _single(profile: Profile, env: Mapping[str, float], transform: str | None) -> Link:
+    found = transform or device_transform(profile)
+    only = pipeline(profile, found)
+    described = describe(profile, "channel")
+    names = tuple(name for d in described for name in d.component_names)
+    if len(names) != only.inputs:
+        names, described = tuple(map(str, range(only.inputs))), ()
+    environment = _environment(profile, found, env)
+    return Link(names, (only,), profile, found, (), environment, described)
+
+
+def device_transform(profile: Profile) -> str:
+    """The tag of a profile of device values that leads to colours."""
+    kind = profile.header.device_class
+    if kind in ("mid ", "mvis"):
+        other = "an MVIS" if kind == "mid " else "a MID"
+        raise LinkError(f"one profile, and it needs {other}", hint="give the MID, then the MVIS")
+    found = next((t for t in DEVICE_TRANSFORMS if isinstance(profile.tags.get(t), Pipeline)), None)
+    if found is None:
+        raise LinkError(
+            f"the profile (class '{kind}') has no transform to colours that can be run",
+            hint=f"one of {', '.join(DEVICE_TRANSFORMS)} with processing elements is needed",
+        )
+    return found
+
+
+def transform_variables(
+    profile: Profile, transform: str
+) -> tuple[tuple[str, Described | None], ...]:
+    """The variables a transform reads: signature, and its description if it has one."""
+    described = {d.signature: d for d in describe(profile, "env")}
     signatures: dict[str, None] = {}
-    for element in _pipeline(mvis, "M2B0").elements:
+    for element in pipeline(profile, transform).elements:
         if isinstance(element, Program):
             try:
                 signatures |= dict.fromkeys(verify(element).variables)
@@ -111,9 +184,9 @@ def transform_variables(mvis: Profile) -> tuple[tuple[str, Described | None], ..
     return tuple((s, described.get(s)) for s in signatures if s not in ("true", "ndef"))
 
 
-def _environment(mvis: Profile, given: Mapping[str, float]) -> dict[str, float]:
+def _environment(profile: Profile, transform: str, given: Mapping[str, float]) -> dict[str, float]:
     """Values by signature for a run; by name or signature in what is given."""
-    known = transform_variables(mvis)
+    known = transform_variables(profile, transform)
     by_name = {name: (s, d) for s, d in known for name in ((s, d.name) if d else (s,))}
     environment = {}
     for name, value in given.items():
@@ -143,13 +216,14 @@ def _in_range(name: str, value: float, described: Described | None) -> float:
     return rounded
 
 
-def _run(
-    pipeline: Pipeline, pixels: ArrayLike, environment: Mapping[str, float]
-) -> NDArray[np.float32]:
+def run_pipeline(
+    transform: Pipeline, pixels: ArrayLike, environment: Mapping[str, float]
+) -> Values:
+    """The elements of a transform, one after the other."""
     values = np.asarray(pixels, dtype=np.float32)
-    if values.ndim == 0 or values.shape[-1] != pipeline.inputs:
-        raise ProgramError(f"{pipeline.inputs} channels are needed, the array is {values.shape}")
-    for element in pipeline.elements:
+    if values.ndim == 0 or values.shape[-1] != transform.inputs:
+        raise ProgramError(f"{transform.inputs} channels are needed, the array is {values.shape}")
+    for element in transform.elements:
         values = run(element, values, environment)
     return values
 
@@ -167,10 +241,13 @@ def _check_class(profile: Profile, wanted: str, place: str, name: str) -> None:
         )
 
 
-def _pipeline(profile: Profile, signature: str) -> Pipeline:
+def pipeline(profile: Profile, signature: str) -> Pipeline:
+    """A transform of a profile, whose elements fit each other; LinkError where there is none."""
     tag = profile.tags.get(signature)
     if not isinstance(tag, Pipeline):
-        raise LinkError(f"the profile has no '{signature}' transform")
+        spectral = "compile the model with --spectral 400nm..700nm,10nm"
+        hint = spectral if signature.startswith("M2S") else None
+        raise LinkError(f"the profile has no '{signature}' transform", hint=hint)
     channels = tag.inputs
     for element in tag.elements:
         if element.inputs != channels:

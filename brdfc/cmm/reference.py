@@ -65,16 +65,29 @@ def apply(
     repeat: passes over the pixels, for timing. Raises LinkError when the engine does not connect
     the profiles, or crashes on them.
     """
+    return chain([mid, mvis], pixels, runs, repeat)
+
+
+def chain(
+    profiles: Sequence[str | Path],
+    pixels: ArrayLike,
+    runs: Sequence[Mapping[str, float]] = ({},),
+    repeat: int = 1,
+    encoded: bool = True,
+) -> ReferenceRun:
+    """As apply, through any profiles that lead to XYZ. encoded: what comes out is PCS-encoded: the
+    last profile's connection space, and not the device values of a profile of XYZ."""
     request = {
         "task": "apply",
-        "profiles": [str(mid), str(mvis)],
+        "profiles": [str(path) for path in profiles],
         "runs": [dict(run) for run in runs],
         "repeat": repeat,
     }
     answer = _ask(request, {"pixels": np.ascontiguousarray(pixels, dtype=np.float32)})
     if "status" in answer:
         raise LinkError(f"the reference engine refuses the profiles with status {answer['status']}")
-    return ReferenceRun(answer["xyz"].astype(np.float64) * ENCODING, answer["seconds"])
+    scale = ENCODING if encoded else 1.0
+    return ReferenceRun(answer["xyz"].astype(np.float64) * scale, answer["seconds"])
 
 
 def _ask(request: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:

@@ -35,7 +35,7 @@ class Direction:
     """A rule read one way, its sides as patterns.
 
     heads: the operators that the left side cannot do without, for passing over most places
-    quickly.
+    quickly; late: to be tried after all others.
     """
 
     rule: Rule
@@ -43,6 +43,7 @@ class Direction:
     left: Expression
     right: Expression
     heads: frozenset[str]
+    late: bool = False
 
 
 @cache
@@ -55,8 +56,8 @@ def directions() -> tuple[Direction, ...]:
         left, right = pattern(rule.left), pattern(rule.right)
         found.append(Direction(rule, rule.name, left, right, _heads(left)))
         if rule.both:
-            back = Direction(rule, f"{rule.name}, back", right, left, _heads(right))
-            found.append(back)
+            name, late = f"{rule.name}, back", rule.multiplies_out
+            found.append(Direction(rule, name, right, left, _heads(right), late))
     return tuple(found)
 
 
@@ -109,7 +110,7 @@ class Neighbours:
     def __init__(self, ranges: Ranges, regimes: bool = False) -> None:
         self.ranges = ranges
         self.regimes = regimes
-        self._known: dict[tuple[Expression, Ranges], list[tuple[str, Expression]]] = {}
+        self._known: dict[tuple[Expression, Ranges], list[tuple[Direction, Expression]]] = {}
 
     def proposed(
         self, expression: Expression, proposals: Iterable[Proposal]
@@ -121,17 +122,22 @@ class Neighbours:
 
     def of(self, expression: Expression) -> Iterator[tuple[Step, Expression]]:
         """Every form one step from this one, in a fixed order; the same may come twice."""
-        for place, known in places(expression, self.ranges):
-            for name, replacement in self._replacements(place, known):
-                whole = _with(expression, place, replacement)
-                tidy = rewrite(whole, self.ranges, simplified)
-                if tidy is not expression:
-                    yield Step(name, describe(place), describe(replacement)), tidy
+        every = places(expression, self.ranges)
+        for late in (False, True):
+            for place, known in every:
+                for direction, replacement in self._replacements(place, known):
+                    if direction.late is not late:
+                        continue
+                    whole = _with(expression, place, replacement)
+                    tidy = rewrite(whole, self.ranges, simplified)
+                    if tidy is not expression:
+                        step = Step(direction.name, describe(place), describe(replacement))
+                        yield step, tidy
 
-    def _replacements(self, place: Expression, known: Ranges) -> list[tuple[str, Expression]]:
+    def _replacements(self, place: Expression, known: Ranges) -> list[tuple[Direction, Expression]]:
         key = (place, known)
         if key not in self._known:
-            found: dict[Expression, str] = {}
+            found: dict[Expression, Direction] = {}
             heads = _heads(place)
             for direction in directions():
                 if direction.heads <= heads:
@@ -139,8 +145,8 @@ class Neighbours:
                         inside = known.assuming(where, True) if where else known
                         if new is not place and _fits(new, place, inside):
                             split = make("where", where, new, place) if where else new
-                            found.setdefault(split, direction.name)
-            self._known[key] = [(name, replacement) for replacement, name in found.items()]
+                            found.setdefault(split, direction)
+            self._known[key] = [(direction, new) for new, direction in found.items()]
         return self._known[key]
 
 

@@ -19,13 +19,15 @@ VALUE = ""
 @dataclass(frozen=True)
 class Rule:
     """left -> right, and right -> left too if both is set. needs: variable to "> 0", ">= 0", or
-    "within pi" (from -pi to pi, as float32 has it)."""
+    "within pi" (from -pi to pi, as float32 has it). multiplies_out: read backwards it opens a
+    bracket, which can be done at many places and seldom helps; a search tries it last."""
 
     name: str
     left: str
     right: str
     needs: Mapping[str, str] = field(default_factory=dict)
     both: bool = False
+    multiplies_out: bool = False
 
 
 _COMPENSATED = """
@@ -122,12 +124,18 @@ RULES: tuple[Rule, ...] = (
     ),
     Rule("compensated angle sum", "cos((x + y)/2)", _COMPENSATED_COSINE),
     # ---- sums and products
-    Rule("common factor", "x*y + x*z", "x*(y + z)", both=True),
-    Rule("common factor of a difference", "x*y - x*z", "x*(y - z)", both=True),
+    Rule("common factor", "x*y + x*z", "x*(y + z)", both=True, multiplies_out=True),
+    Rule(
+        "common factor of a difference",
+        "x*y - x*z",
+        "x*(y - z)",
+        both=True,
+        multiplies_out=True,
+    ),
     Rule("one part of two", "x*(1 - y) + y", "x + y*(1 - x)", both=True),
     Rule("lerp", "x + (1 - x)*y", "y + x*(1 - y)", both=True),
     Rule("common factor of a minimum", "min(x*y, x*z)", "x*min(y, z)", {"x": ">= 0"}, both=True),
     Rule("minimum of reciprocals", "min(1/x, 1/y)", "1/max(x, y)", {"x": "> 0", "y": "> 0"}),
     Rule("minimum over one divisor", "min(x/z, y/z)", "min(x, y)/z", {"z": "> 0"}, both=True),
-    Rule("sum over one divisor", "x/z + y/z", "(x + y)/z", both=True),
+    Rule("sum over one divisor", "x/z + y/z", "(x + y)/z", both=True, multiplies_out=True),
 )

@@ -16,7 +16,9 @@ from brdfc.calc.program import Element
 from brdfc.icc.layout import read_parts, unpack, unpack_records, write_parts
 from brdfc.icc.numbers import NUMBER_FORMATS, NumberArray, Signature, XYZArray
 from brdfc.icc.signatures import signature_text
+from brdfc.icc.structures import Structure
 from brdfc.icc.texts import Dictionary, LocalizedText, Utf8Array, Utf8Text
+from brdfc.icc.viewing import SpectralViewingConditions
 from brdfc.source.errors import ProfileError, ProgramError
 
 __all__ = [
@@ -26,6 +28,8 @@ __all__ = [
     "Opaque",
     "Pipeline",
     "Signature",
+    "SpectralViewingConditions",
+    "Structure",
     "Tag",
     "Utf8Array",
     "Utf8Text",
@@ -95,6 +99,8 @@ Tag = (
     | XYZArray
     | Signature
     | Pipeline
+    | SpectralViewingConditions
+    | Structure
     | Opaque
 )
 
@@ -114,13 +120,22 @@ DECODERS: dict[bytes, Callable[[bytes, str], Tag]] = {
     b"XYZ ": XYZArray.decode,
     b"sig ": Signature.decode,
     b"mpet": Pipeline.decode,
+    b"svcn": SpectralViewingConditions.decode,
     **{kind.encode(): NumberArray.decode for kind in NUMBER_FORMATS},
 }
 
 
-def decode_tag(data: bytes, where: str) -> Tag:
-    """A tag from exactly its bytes."""
+MAX_DEPTH = 8
+"""Structures in structures: the format's own go two deep."""
+
+
+def decode_tag(data: bytes, where: str, depth: int = 0) -> Tag:
+    """A tag from exactly its bytes; depth: how many structures it stands in."""
     if len(data) < 8:
         raise ProfileError(f"{len(data)} bytes are too few for a tag type", where=where)
+    if data[:4] == b"tstr":
+        if depth == MAX_DEPTH:
+            raise ProfileError(f"structures more than {MAX_DEPTH} deep in another", where=where)
+        return Structure.decode(data, where, lambda part, at: decode_tag(part, at, depth + 1))
     decode = DECODERS.get(data[:4])
     return decode(data, where) if decode else Opaque(data)

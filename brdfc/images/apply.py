@@ -1,40 +1,46 @@
-"""A link of profiles on an image of coefficients, band by band."""
+"""Linked profiles on an image of coefficients, band by band."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from brdfc.cmm.link import Link
-from brdfc.images.tiff import WRITING, Band, open_coefficients, write_xyz
+from brdfc.cmm.rendering import Rendering, Target
+from brdfc.images.tiff import WRITING, Band, open_coefficients, write_colours
 from brdfc.source.errors import ImageError
 
 
 @dataclass
 class Applied:
-    """What was done: pixels, and for each channel how many samples lay outside its range."""
+    """What was done: pixels, for each channel how many samples lay outside its range, and how many
+    pixels were clipped to what sRGB can show."""
 
     pixels: int = 0
+    clipped: int = 0
     outside: dict[str, int] = field(default_factory=dict)
 
 
 def apply_to_tiff(
-    link: Link,
+    rendering: Rendering,
     source: str | Path,
     target: str | Path,
-    description: str,
+    run: str,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Applied:
-    """Evaluate a float32 TIFF of coefficients to a float32 TIFF of XYZ.
+    """Evaluate a float32 TIFF of coefficients to a TIFF of what the rendering gives; run: the
+    variables, for the description in it.
 
     The target appears whole or not at all. Raises ImageError for an image that does not fit the
     link, or that holds NaN or infinity anywhere (with their count). progress gets rows done and
     rows in all.
     """
-    source, target = Path(source), Path(target)
+    source, target, link = Path(source), Path(target), rendering.link
     if target.exists() and source.exists() and target.samefile(source):
         raise ImageError("the output would replace its own input", where=str(target))
     with open_coefficients(source) as image:
@@ -49,17 +55,17 @@ def apply_to_tiff(
         applied = Applied(pixels=image.height * image.width)
         faults = _Faults()
 
-        def bands() -> Iterator[Band]:
+        def bands() -> Iterator[NDArray[Any]]:
             top = 0
             for band in image.bands():
                 faults.count(band, top)
                 _count_outside(link, band, applied)
-                # After the first fault the rest is only counted: nothing will be written.
-                yield (
-                    link.apply(band)
-                    if not faults.total
-                    else np.zeros((*band.shape[:2], 3), np.float32)
-                )
+                if faults.total:  # the rest is only counted: nothing will be written
+                    yield np.zeros((*band.shape[:2], rendering.samples), rendering.dtype)
+                else:
+                    colours, clipped = rendering.counted(band)
+                    applied.clipped += clipped
+                    yield colours
                 top += len(band)
                 progress(top, image.height)
             if faults.total:
@@ -71,8 +77,21 @@ def apply_to_tiff(
                     hint="mask or fill them first; nothing was written",
                 )
 
-        write_xyz(target, image.height, image.width, bands(), description)
+        shape = (image.height, image.width, rendering.samples)
+        write_colours(target, shape, bands(), f"{_NAMES[rendering.to]}; {_said(rendering, run)}")
     return applied
+
+
+_NAMES = {
+    Target.XYZ: "XYZ, Y = 1 for white",
+    Target.LAB: "CIELAB",
+    Target.SRGB: "sRGB",
+    Target.SPECTRUM: "reflectances",
+}
+
+
+def _said(rendering: Rendering, run: str) -> str:
+    return "; ".join(part for part in (rendering.note, run) if part)
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""TIFF files of coefficients and of XYZ, read and written in bands of rows."""
+"""TIFF files of coefficients and of colours, read and written in bands of rows."""
 
 from __future__ import annotations
 
@@ -104,31 +104,41 @@ def _mapped(tiff: Any, page: Any) -> Any:
     )
 
 
-def write_xyz(
-    path: str | Path, height: int, width: int, bands: Iterable[Band], description: str
+def write_colours(
+    path: str | Path,
+    shape: tuple[int, int, int],
+    bands: Iterable[NDArray[Any]],
+    description: str,
 ) -> None:
-    """Write (height, width, 3) float32 as a TIFF, whole or not at all; bands from top to bottom."""
+    """Write (height, width, samples) as a TIFF, whole or not at all; bands from top to bottom.
+
+    Bytes are a picture, three samples of red, green and blue; numbers of another kind are numbers.
+    """
     import tifffile
 
     from brdfc import __version__
 
     iterator = iter(bands)
     first = next(iterator)
+    picture = first.dtype == np.uint8
+    kind: dict[str, Any] = {"photometric": "rgb"}
+    if not picture:
+        more = ("unspecified",) * (shape[-1] - 1)
+        kind = {"photometric": "minisblack", "extrasamples": more}
 
-    def strips() -> Iterator[Band]:
+    def strips() -> Iterator[NDArray[Any]]:
         yield first
         yield from iterator
 
     with whole_file(path) as temporary, tifffile.TiffWriter(temporary) as tiff:
         tiff.write(
             strips(),
-            shape=(height, width, 3),
-            dtype=np.float32,
+            shape=shape,
+            dtype=first.dtype,
             rowsperstrip=len(first),
-            photometric="minisblack",
             planarconfig="contig",
-            extrasamples=("unspecified", "unspecified"),
             description=description,
             software=f"brdfc {__version__}",
             metadata=None,
+            **kind,
         )

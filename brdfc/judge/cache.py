@@ -102,6 +102,7 @@ def key(problem: Problem, goal: Goal, effort: int | None) -> str:
         "version": [__version__, rules, judged_at.hexdigest()],
         "formula": to_data(problem.exact),
         "domain": [domain, quantities, bindings],
+        "colours": [problem.colorimetry.white, problem.colorimetry.rows],
         "aim": [goal.kind, goal.limit, effort, table.dispatch, costs],
     }
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()

@@ -56,7 +56,7 @@ def error_map(
     at, side = _points(problem, points), CELLS
     if not float64_suffices(problem.exact, at):
         at, side = _points(problem, min(points, SLOW_POINTS)), SLOW_CELLS
-    judge = Judge(problem.exact, at, problem.quantities, problem.bindings)
+    judge = Judge(problem, at)
     given = pixels(at, problem)
     x, y = _coordinates(at, problem)
     domain = problem.ranges.domain

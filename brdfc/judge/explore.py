@@ -75,14 +75,14 @@ def explore(
     choosing are measured again at thousands, and scheduled; with thorough all of them are, so that
     they can be compared. progress gets forms measured and the effort.
     """
-    judge = Judge(problem.exact, problem.points(FEW), problem.quantities, problem.bindings)
+    judge = Judge(problem, problem.points(FEW))
     found, candidates = _searched(problem, judge, effort, progress, regimes=goal.kind == "best")
     if not any(goal.accepts(c.measured) for c in candidates.values()) and not found.stopped:
         found, more = _searched(problem, judge, effort, progress, regimes=True)
         candidates |= {e: c for e, c in more.items() if e not in candidates}
     # Where float64 is not good enough for the truth, its price limits how many points there are.
     many = problem.final_points(MANY if judge.quick else 2 * FEW)
-    strict = Judge(problem.exact, many, problem.quantities, problem.bindings)
+    strict = Judge(problem, many)
     few = max(2, min(_FINALISTS, SCHEDULED // len(postorder(problem.graph(problem.start)))))
     finals = _finals(problem, strict, candidates, goal, few)
     if not finals:

@@ -198,5 +198,5 @@ class _Source:
     def without_diffuse(self, at: dict[str, Values]) -> None:
         """Without its diffuse part a model shows the error of its lobe: every other time."""
         for q in self.quantities:
-            if q.type.name == "XYZ" and self.domain[q.name].low <= 0 <= self.domain[q.name].high:
+            if q.type.value.width > 1 and self.domain[q.name].low <= 0 <= self.domain[q.name].high:
                 at[q.name][::2] = 0

@@ -13,10 +13,10 @@ from brdfc.calc.program import Program
 from brdfc.codegen.estimate import estimated_price
 from brdfc.codegen.nodes import Node
 from brdfc.codegen.select import Binding, ChannelBinding, VariableBinding
-from brdfc.colour.difference import ciede2000
 from brdfc.engine.interpreter import run
 from brdfc.judge.directions import directions
 from brdfc.judge.graphs import Graphs
+from brdfc.judge.problem import Problem
 from brdfc.judge.strata import Points
 from brdfc.lang.model import Quantity
 from brdfc.symbolic.evaluate import evaluate, evaluate_precisely
@@ -36,7 +36,7 @@ FALSE_ZERO = 2.0**-100
 @dataclass(frozen=True)
 class Measured:
     """bits: log2(1 + units in the last place) at worst and in the mean, where values count; de:
-    worst CIEDE2000 (white: D50); price: nanoseconds a pixel; worst_at: the point of worst bits."""
+    worst CIEDE2000; price: nanoseconds a pixel; worst_at: the point of worst bits."""
 
     bits: float
     mean_bits: float
@@ -48,20 +48,15 @@ class Measured:
 class Judge:
     """Measures forms of one formula. truth: its exact values in high precision."""
 
-    def __init__(
-        self,
-        exact: Expression,
-        points: Points,
-        quantities: tuple[Quantity, ...],
-        bindings: Mapping[str, Binding],
-    ) -> None:
-        self.exact, self.points = exact, points
+    def __init__(self, problem: Problem, points: Points) -> None:
+        exact = problem.exact
+        self.exact, self.points, self.colorimetry = exact, points, problem.colorimetry
         self.truth, self.quick = _truth(exact, points)
-        peaks = [evaluate(exact, at) for at in _at_peak(points, quantities)]
+        peaks = [evaluate(exact, at) for at in _at_peak(points, problem.quantities)]
         peak = np.nanmax(np.abs(np.concatenate(peaks, axis=-1)), axis=-1, initial=0.0)
         self.seen = SEEN * np.minimum(peak, LARGEST)[:, None]
         self._weigh()
-        self.graphs = _graphs(points, bindings)
+        self.graphs = _graphs(points, problem.bindings)
         self.usual = self.graphs.only(np.array([s == "uniform" for s in points.strata]))
 
     def _weigh(self) -> None:
@@ -126,7 +121,8 @@ class Judge:
         """(points, components) in bits, 0 where values do not count; (points,) in CIEDE2000."""
         ulps = np.where(self.counted, np.abs(result - self.truth) / self.unit, 0.0)
         truth = np.where(self.known[:, None], self.truth, 0.0)
-        return np.log2(1 + ulps), np.where(self.known, ciede2000(result, truth), 0.0)
+        differences = self.colorimetry.difference(result, truth)
+        return np.log2(1 + ulps), np.where(self.known, differences, 0.0)
 
 
 def float64_suffices(exact: Expression, points: Points) -> bool:

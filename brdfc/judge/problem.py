@@ -8,6 +8,7 @@ from functools import cached_property
 
 from brdfc.codegen.nodes import Node
 from brdfc.codegen.select import Binding, VariableBinding, select
+from brdfc.colour.colorimetry import XYZ_UNDER_D50, Colorimetry
 from brdfc.judge.samples import sample
 from brdfc.judge.strata import Points, points
 from brdfc.lang.model import Quantity
@@ -24,12 +25,13 @@ WORK = 9_500
 
 @dataclass(frozen=True)
 class Problem:
-    """What is to be compiled, and its surroundings."""
+    """What is to be compiled, and its surroundings. colorimetry: what its results look like."""
 
     formula: Formula
     quantities: tuple[Quantity, ...]
     bindings: Mapping[str, Binding]
     inputs: int
+    colorimetry: Colorimetry = XYZ_UNDER_D50
 
     @property
     def exact(self) -> Expression:

@@ -74,7 +74,7 @@ def as_written(
         if given[q.name] != q.type.name:
             message = f"{q.name} is of type {given[q.name]} here, and {q.type.name} there"
             raise BrdfcError(f"'{model.name}' cannot be compared: {message}", where=model.origin)
-    exact = formula(model, constants).exact
+    exact = formula(model, constants, problem.formula.white).exact
     if exact.width != problem.exact.width:
         message = f"its radiance has {exact.width} components, not {problem.exact.width}"
         raise BrdfcError(f"'{model.name}' cannot be compared: {message}", where=model.origin)

@@ -18,7 +18,7 @@ from brdfc.calc.program import Program
 from brdfc.calc.text import assemble, disassemble
 from brdfc.calc.verify import Facts, verify
 from brdfc.codegen.select import Binding, ChannelBinding, VariableBinding
-from brdfc.colour.difference import ciede2000
+from brdfc.colour.colorimetry import XYZ_UNDER_D50, Colorimetry
 from brdfc.engine.interpreter import run
 from brdfc.judge.samples import Samples
 from brdfc.source.errors import SelfCheckError
@@ -27,7 +27,7 @@ from brdfc.symbolic.expression import Expression
 from brdfc.symbolic.intervals import LARGEST
 
 LIMIT = 0.002
-"""CIEDE2000 (white: D50) that a program may differ from its model: far below what anyone can see,
+"""CIEDE2000 that a program may differ from its model: far below what anyone can see,
 and ten times what good float32 forms differ by."""
 
 
@@ -49,9 +49,10 @@ def self_check(
     bindings: Mapping[str, Binding],
     samples: Samples,
     limit: float = LIMIT,
+    colorimetry: Colorimetry = XYZ_UNDER_D50,
 ) -> Verdict:
     """Judge a program by the model's exact expression; SelfCheckError when it fails, or differs by
-    more than limit CIEDE2000 anywhere."""
+    more than limit CIEDE2000 anywhere. colorimetry: what its results look like."""
     _check_encodings(program)
     facts = verify(program)
     points, undefined, worst, worst_at = 0, 0, 0.0, ""
@@ -67,10 +68,10 @@ def self_check(
                 hint="narrow the declared range, or add `where ... else` to the formula",
             )
         known = _known(truth)
-        difference = _differences(result, truth)
+        difference = _differences(result, truth, colorimetry)
         for i in np.flatnonzero(difference > limit):
             near = _nearby_truths(exact, variables, columns, int(i))
-            difference[i] = np.min([difference[i], *_differences(result[i], near)])
+            difference[i] = np.min([difference[i], *_differences(result[i], near, colorimetry)])
         index = int(np.argmax(difference))
         if difference[index] > worst or not worst_at:
             worst, worst_at = float(difference[index]), _place(variables, columns, index)
@@ -143,9 +144,12 @@ def _known(truth: NDArray[np.float64]) -> NDArray[np.bool_]:
     return np.asarray((np.abs(truth) < LARGEST).all(axis=-1))
 
 
-def _differences(result: NDArray[np.float32], truth: NDArray[np.float64]) -> NDArray[np.float64]:
+def _differences(
+    result: NDArray[np.float32], truth: NDArray[np.float64], colorimetry: Colorimetry
+) -> NDArray[np.float64]:
     known = _known(truth)
-    return np.where(known, ciede2000(result, np.where(known[..., None], truth, 0)), 0.0)
+    comparable = np.where(known[..., None], truth, 0)
+    return np.where(known, colorimetry.difference(result, comparable), 0.0)
 
 
 def _nearby_truths(

@@ -43,7 +43,7 @@ def judge_strata(
         at = _stratum_points(problem, stratum, share)
         if at.count > SLOW_JUDGED and not float64_suffices(problem.exact, at):
             at = _stratum_points(problem, stratum, SLOW_JUDGED)
-        judge = Judge(problem.exact, at, problem.quantities, problem.bindings)
+        judge = Judge(problem, at)
         given = pixels(at, problem)
         starts, ends, floor = _lines(judge, given, lines)
         exact = _Exact(problem)

@@ -121,7 +121,7 @@ def _stratum(
     if stratum == "lobe":
         # Without its diffuse part a model shows the error of its lobe.
         for q in quantities:
-            if q.type.name == "XYZ" and domain[q.name].low <= 0 <= domain[q.name].high:
+            if q.type.value.width > 1 and domain[q.name].low <= 0 <= domain[q.name].high:
                 drawn[q.name][::2] = 0
     return drawn
 

@@ -57,7 +57,11 @@ class _Builder:
     def _header(self, span: Span, kind: Token, name: Token, title: Token, *clauses: Any) -> Any:
         texts = [(clause.data, _text(clause.children[0])) for clause in clauses]
         cites, notes = (tuple(t for k, t in texts if k == key) for key in ("cite", "note"))
-        return ast.Header(span, str(kind), str(name), _text(title), cites, notes)
+        highlights = [text for clause, text in texts if clause == "highlight"]
+        if len(highlights) > 1:
+            raise Rejected(Diagnostic(span, "a header says once what highlights look like"))
+        highlight = "".join(highlights)
+        return ast.Header(span, str(kind), str(name), _text(title), cites, notes, highlight)
 
     def _declaration(
         self, span: Span, role: Token, name: Token, type_: Any, range_: Any, default: Any,

@@ -11,34 +11,47 @@ from graphlib import CycleError, TopologicalSorter
 from brdfc.lang import facts, tree
 from brdfc.lang.borrow import Borrower, Imported
 from brdfc.lang.declarations import check_unique, quantity
-from brdfc.lang.model import Definition, Law, Model, Module, Quantity
+from brdfc.lang.model import HIGHLIGHTS, Definition, Law, Model, Module, Quantity
 from brdfc.lang.names import check_names, quantities_used, taken_word, used_names
 from brdfc.lang.parse import Parsed
 from brdfc.lang.report import Report
 from brdfc.lang.scope import FileScope
 from brdfc.lang.typecheck import TypeChecker
-from brdfc.lang.types import TRUTH, Dimension
+from brdfc.lang.types import TRUTH, DeclaredType, Dimension
 from brdfc.source.span import Span
 
+_FACTS = tree.Law | tree.Breaks | tree.Example
 
-def check(parsed: Parsed, origin: str, report: Report, imported: Imported) -> Model | Module | None:
+
+def check(
+    parsed: Parsed,
+    origin: str,
+    report: Report,
+    imported: Imported,
+    spectral: DeclaredType | None = None,
+) -> Model | Module | None:
     """The checked file, or None where something is wrong with it.
 
     imported: gives the file an import statement names, or None after reporting why there is none.
+    spectral: the spectrum that stands for X, Y, Z (see types.in_bands_of); the facts, which the
+    file states in X, Y, Z, are then left out.
     """
     for diagnostic in parsed.diagnostics:
         report.add(diagnostic)
     report.broken |= parsed.unread
-    checked = _File(parsed, report).checked(origin, imported)
+    checked = _File(parsed, report, spectral).checked(origin, imported)
     return checked if report.clean else None
 
 
 class _File:
     """One file on its way from statements to what they mean."""
 
-    def __init__(self, parsed: Parsed, report: Report) -> None:
+    def __init__(self, parsed: Parsed, report: Report, spectral: DeclaredType | None) -> None:
         self._report = report
-        self._statements = parsed.statements
+        self._spectral = spectral
+        self._statements = tuple(
+            s for s in parsed.statements if spectral is None or not isinstance(s, _FACTS)
+        )
         # A statement that could not be read may be the one that is missing.
         self._complete = not parsed.diagnostics
         self._scope = FileScope(report)
@@ -88,6 +101,7 @@ class _File:
             examples=examples,
             origin=origin,
             geometry=self._borrower.geometry,
+            highlight=header.highlight or HIGHLIGHTS[0],
         )
 
     def _quantities(self, radiance: Definition | None) -> dict[str, Quantity]:
@@ -119,7 +133,14 @@ class _File:
         for other in headers[1:]:
             note = ((header.span, "the first header is here"),)
             self._report.error(other.span, "this is a second header", notes=note)
+        if header.highlight and header.highlight not in HIGHLIGHTS:
+            near = self._report.suggestion(header.highlight, HIGHLIGHTS)
+            message = f"highlights are not '{header.highlight}'"
+            self._report.error(header.span, message, expected=" or ".join(HIGHLIGHTS), hint=near)
         if header.kind == "module":
+            if header.highlight:
+                message = "a module has no highlights: that is for its models to say"
+                self._report.error(header.span, message)
             for statement in self._statements:
                 allowed = tree.Header | tree.Import | tree.Let | tree.Declaration
                 if not isinstance(statement, allowed):
@@ -134,7 +155,7 @@ class _File:
     def _declare(self) -> None:
         for statement in self._statements:
             if isinstance(statement, tree.Declaration):
-                found = quantity(statement, self._report)
+                found = quantity(statement, self._report, self._spectral)
                 if found is None:
                     self._report.broken.add(statement.name)
                 else:

@@ -7,21 +7,26 @@ from collections.abc import Sequence
 from brdfc.lang.model import Quantity, Role
 from brdfc.lang.report import Report
 from brdfc.lang.tree import Declaration, Number
-from brdfc.lang.types import TYPES, DeclaredType, spectrum
-from brdfc.lang.values import BadValue, bounds, in_own_unit
+from brdfc.lang.types import TYPES, DeclaredType, in_bands_of
+from brdfc.lang.values import BadValue, bounds, checked_spectrum, in_own_unit
 from brdfc.source.span import Span
 
 SPECTRUM = "spectrum"
 _GRID = "spectrum(400nm..700nm, 10nm)"
-_MOST_WAVELENGTHS = 1000
 
 # A profile's calculator gives these two a meaning of its own.
 _RESERVED_SIGNATURES = ("true", "ndef")
 
 
-def quantity(declaration: Declaration, report: Report) -> Quantity | None:
-    """The quantity a statement declares, or None where its type or range is wrong."""
-    type_ = _type(declaration, report)
+def quantity(
+    declaration: Declaration, report: Report, spectral: DeclaredType | None = None
+) -> Quantity | None:
+    """The quantity a statement declares, or None where its type or range is wrong.
+
+    spectral: the spectrum that stands for X, Y, Z, see in_bands_of.
+    """
+    written = _type(declaration, report)
+    type_ = None if written is None else in_bands_of(written, spectral)
     _check_signature(declaration, type_, report)
     if type_ is None:
         return None
@@ -118,15 +123,11 @@ def _spectrum(declaration: Declaration, report: Report) -> DeclaredType | None:
             report.error(number.span, message, hint=f"as in {_GRID}")
             return None
     first, last, step = (int(number.value) for number in grid)
-    if first >= last or (last - first) % step:
-        message = f"{step}nm steps do not lead from {first}nm to {last}nm"
-        report.error(declaration.type_span, message)
+    try:
+        return checked_spectrum(first, last, step)
+    except BadValue as bad:
+        report.error(declaration.type_span, bad.message, hint=bad.hint)
         return None
-    if (last - first) // step >= _MOST_WAVELENGTHS:
-        message = f"a spectrum has at most {_MOST_WAVELENGTHS} wavelengths"
-        report.error(declaration.type_span, message)
-        return None
-    return spectrum(first, last, step)
 
 
 def _range(

@@ -24,7 +24,7 @@ from brdfc.lang.imports import (
 from brdfc.lang.limits import MAX_IMPORTS, MAX_TEXT
 from brdfc.lang.model import Model, Module
 from brdfc.lang.report import Report
-from brdfc.lang.values import BadValue, parse_value
+from brdfc.lang.values import BadValue, parse_spectrum, parse_value
 from brdfc.source.diagnostics import Diagnostic, did_you_mean
 from brdfc.source.errors import BrdfcError, ModelError
 from brdfc.source.span import Source
@@ -52,16 +52,19 @@ class LibraryEntry:
     path: Path
 
 
-def load(reference: str | Path, geometry: str | Path | None = None) -> Model:
+def load(
+    reference: str | Path, geometry: str | Path | None = None, spectral: str | None = None
+) -> Model:
     """The checked model of a `.brdf` file, or of the library by its name.
 
     reference: a path (it exists, ends in .brdf or has a separator in it), else a library name.
     geometry: "plane" (where None), "full", or the reference of another module of angles and
-    cosines: what `import geometry` stands for in the model.
+    cosines: what `import geometry` stands for in the model. spectral: wavelengths, such as
+    "400nm..700nm,10nm": what is X, Y, Z in the model becomes one value for each of them.
     Raises ModelError with all that is wrong in the text, or BrdfcError where there is none, or
     where a geometry is chosen for a model that imports none.
     """
-    found = load_file(reference, geometry)
+    found = load_file(reference, geometry, spectral)
     if isinstance(found, Module):
         raise BrdfcError(
             f"'{found.name}' is a module of functions, not a model",
@@ -78,10 +81,12 @@ def textbook_form(name: str | Path, geometry: str | Path | None = None) -> Model
     return load(path, geometry) if path else None
 
 
-def load_file(reference: str | Path, geometry: str | Path | None = None) -> Model | Module:
+def load_file(
+    reference: str | Path, geometry: str | Path | None = None, spectral: str | None = None
+) -> Model | Module:
     """Like load, but also for modules."""
     path = _path(reference)
-    found = _Loader(geometry).whole(_source(path, str(path)), path, str(reference))
+    found = _Loader(geometry, spectral).whole(_source(path, str(path)), path, str(reference))
     if geometry is not None and isinstance(found, Model) and not found.geometry:
         raise BrdfcError(
             f"'{found.name}' imports no geometry: its angles are its own",
@@ -162,7 +167,8 @@ def _source(path: Path, shown: str) -> Source:
 class _Loader:
     """One load: the file asked for and all that it imports, each read and checked once."""
 
-    def __init__(self, geometry: str | Path | None) -> None:
+    def __init__(self, geometry: str | Path | None, spectral: str | None = None) -> None:
+        self._spectral = parse_spectrum(spectral) if spectral is not None else None
         self._geometry = library_files().get(DEFAULT_GEOMETRY)
         if geometry is not None:
             self._geometry = _geometry_path(geometry)
@@ -186,7 +192,7 @@ class _Loader:
         report = Report(source)
         with self._opened(path, source.name):
             imported = partial(self._imported, folder=path.parent, report=report)
-            found = check(parse(source), origin, report, imported)
+            found = check(parse(source), origin, report, imported, self._spectral)
         self._diagnostics += report.diagnostics
         return found
 

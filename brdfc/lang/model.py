@@ -6,13 +6,16 @@ the syntax tree (tree.py); a name in one is looked up in the scope of the defini
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 from brdfc.lang.tree import Expr, Parameter
 from brdfc.lang.types import DeclaredType
 from brdfc.source.span import Span
+
+HIGHLIGHTS = ("light", "equal")
+"""What a highlight without colour of its own looks like: the light, or equal X, Y and Z."""
 
 
 class Role(Enum):
@@ -45,6 +48,15 @@ class Quantity:
     def component_names(self) -> tuple[str, ...]:
         """The names its components have as channels: ('Rdx', 'Rdy', 'Rdz') or ('ks',)."""
         return tuple(self.name + suffix for suffix in self.type.suffixes)
+
+    def under(self, white: Sequence[float]) -> Quantity:
+        """The quantity where colours are measured under a white: a reflectance in X, Y, Z is that
+        share of the white. Only colours change; their range is one for all components."""
+        if not self.type.is_colour:
+            return self
+        default = tuple(d * w for d, w in zip(self.default, white, strict=True))
+        most = max(1.0, *white)
+        return replace(self, low=self.low * most, high=self.high * most, default=default)
 
 
 @dataclass(frozen=True)
@@ -136,6 +148,8 @@ class Model:
     """Where it was read from, as the user would write it: a path, or a library model's name."""
     geometry: str = ""
     """The name of the geometry it was read with; "" where it declares its own angles."""
+    highlight: str = "light"
+    """Of HIGHLIGHTS."""
 
     def quantity(self, name: str) -> Quantity | None:
         """The quantity of that name, or of that four-letter signature."""

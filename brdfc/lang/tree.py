@@ -103,7 +103,8 @@ Expr = Number | Name | Call | Unary | Binary | Where | Vector | Component | LetI
 
 @dataclass(frozen=True)
 class Header:
-    """`model ward "title"` or `module microfacet "title"`, with its `cite` and `note` clauses."""
+    """`model ward "title"` or `module microfacet "title"`, with its `cite` and `note` clauses, and
+    the name after `highlight` ("" where there is none)."""
 
     span: Span
     kind: str
@@ -111,6 +112,7 @@ class Header:
     title: str
     citations: tuple[str, ...]
     notes: tuple[str, ...]
+    highlight: str = ""
 
 
 @dataclass(frozen=True)

@@ -158,7 +158,8 @@ class TypeRules:
         # A spectrum's components have wavelengths, no letters.
         if expr.index >= vector.width or vector.width > 3:
             letter = "xyz"[expr.index]
-            self._error(expr.span, f"{vector} has no component '{letter}'")
+            hint = "a formula of .x, .y, .z is for X, Y, Z alone" if vector.width > 3 else None
+            self._error(expr.span, f"{vector} has no component '{letter}'", hint)
             return None
         return ValueType(vector.dimension)
 

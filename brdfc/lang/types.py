@@ -42,7 +42,8 @@ class DeclaredType:
     """A type a channel, env or constant may have.
 
     low and high bound the ranges it may be declared with; suffixes name its components
-    (`Rd : XYZ` becomes the channels Rdx, Rdy, Rdz).
+    (`Rd : XYZ` becomes the channels Rdx, Rdy, Rdz). grid: of a spectrum, its first and last
+    wavelength and the step between, in nanometres.
     """
 
     name: str
@@ -50,10 +51,16 @@ class DeclaredType:
     low: float = float("-inf")
     high: float = float("inf")
     suffixes: tuple[str, ...] = ("",)
+    grid: tuple[int, int, int] | None = None
 
     @property
     def is_angle(self) -> bool:
         return self.value.dimension is Dimension.ANGLE
+
+    @property
+    def is_colour(self) -> bool:
+        """Whether its components are X, Y, Z under a light."""
+        return self.name == "XYZ"
 
 
 _BY_NAME = (
@@ -62,6 +69,8 @@ _BY_NAME = (
     DeclaredType("roughness", NUMBER, low=0.0),
     DeclaredType("reflectance", NUMBER, low=0.0, high=1.0),
     DeclaredType("XYZ", ValueType(Dimension.NUMBER, 3), suffixes=("x", "y", "z")),
+    # A number for each component of a colour that is no colour itself: K/S, say.
+    DeclaredType("bands", ValueType(Dimension.NUMBER, 3), suffixes=("x", "y", "z")),
 )
 TYPES: dict[str, DeclaredType] = {declared.name: declared for declared in _BY_NAME}
 
@@ -76,4 +85,12 @@ def spectrum(first: int, last: int, step: int) -> DeclaredType:
         f"spectrum({first}nm..{last}nm, {step}nm)",
         ValueType(Dimension.NUMBER, len(grid)),
         suffixes=tuple(f"_{wavelength}" for wavelength in grid),
+        grid=(first, last, step),
     )
+
+
+def in_bands_of(declared: DeclaredType, spectral: DeclaredType | None) -> DeclaredType:
+    """A type when a model is read for a spectrum: one value a wavelength in place of X, Y, Z."""
+    if spectral is not None and declared.name in ("XYZ", "bands"):
+        return spectral
+    return declared

@@ -6,7 +6,7 @@ import math
 import re
 from fractions import Fraction
 
-from brdfc.lang.types import DeclaredType
+from brdfc.lang.types import TYPES, DeclaredType, spectrum
 from brdfc.source.errors import ValueGivenError
 
 UNITS = ("deg", "rad", "nm")
@@ -14,6 +14,8 @@ UNITS = ("deg", "rad", "nm")
 _NUMBER = re.compile(r"((?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)([A-Za-z_]*)", re.ASCII)
 _LONGEST = 100
 _SMALLEST, _LARGEST = 1e-300, 1e300
+_MOST_WAVELENGTHS = 1000
+_WAVELENGTHS = re.compile(r"(\d{1,5})(?:nm)?\s*\.\.\s*(\d{1,5})(?:nm)?\s*,\s*(\d{1,5})(?:nm)?")
 
 
 class BadValue(Exception):
@@ -67,6 +69,39 @@ def bounds(declared: DeclaredType) -> str:
     if declared.high == math.inf:
         return f"at least {declared.low:g}"
     return f"within {declared.low:g}..{declared.high:g}"
+
+
+def checked_spectrum(first: int, last: int, step: int) -> DeclaredType:
+    """A spectrum from the first wavelength to the last in whole steps of nanometres; BadValue where
+    they do not lead there, or are too many."""
+    if first <= 0 or step <= 0 or first >= last or (last - first) % step:
+        raise BadValue(f"{step}nm steps do not lead from {first}nm to {last}nm")
+    if (last - first) // step >= _MOST_WAVELENGTHS:
+        raise BadValue(f"a spectrum has at most {_MOST_WAVELENGTHS} wavelengths")
+    return spectrum(first, last, step)
+
+
+def parse_spectrum(text: str) -> DeclaredType:
+    """The spectrum of `400nm..700nm,10nm`, as on the command line; ValueGivenError for any other
+    text."""
+    found = _WAVELENGTHS.fullmatch(text.strip())
+    try:
+        if not found:
+            raise BadValue(f"'{text[:_LONGEST]}' is no range of wavelengths and a step")
+        return checked_spectrum(*(int(number) for number in found.groups()))
+    except BadValue as bad:
+        raise ValueGivenError(bad.message, hint=bad.hint or "write 400nm..700nm,10nm") from None
+
+
+def declared_type(name: str) -> DeclaredType | None:
+    """The type of that name, a spectrum with its wavelengths in brackets among them; None where
+    there is none."""
+    if name in TYPES or not (name.startswith("spectrum(") and name.endswith(")")):
+        return TYPES.get(name)
+    try:
+        return parse_spectrum(name[len("spectrum(") : -1])
+    except ValueGivenError:
+        return None
 
 
 def parse_value(text: str, declared: DeclaredType, name: str) -> tuple[float, ...]:

@@ -18,7 +18,7 @@ STATEMENTS = (
 """The words that begin a statement."""
 
 CONTINUATIONS = (
-    "cite", "note", "in", "as", "with", "where", "else", "and", "or", "not", "within"
+    "cite", "note", "highlight", "in", "as", "with", "where", "else", "and", "or", "not", "within"
 )  # fmt: skip
 """The words that stand within one."""
 

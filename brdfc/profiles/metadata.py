@@ -23,7 +23,7 @@ from brdfc.icc.profile import Profile
 from brdfc.icc.texts import DICTIONARY_TEXT_LIMIT, Dictionary
 from brdfc.lang.model import Model, Quantity
 from brdfc.lang.types import TYPES, DeclaredType
-from brdfc.lang.values import parse_value
+from brdfc.lang.values import declared_type, parse_value
 from brdfc.source.errors import ValueGivenError
 
 
@@ -38,6 +38,11 @@ class Described:
     default: tuple[float, ...]
     signature: str
     description: str
+
+    @property
+    def component_names(self) -> tuple[str, ...]:
+        """The names of its channels: Rdx, Rdy, Rdz."""
+        return tuple(self.name + suffix for suffix in self.type.suffixes)
 
     @property
     def range_text(self) -> str:
@@ -119,7 +124,7 @@ def describe(profile: Profile, role: str) -> tuple[Described, ...]:
 
 
 def _described(meta: Dictionary, key: str, name: str) -> Described | None:
-    declared = TYPES.get(meta.get(f"{key}.type") or "")
+    declared = declared_type(meta.get(f"{key}.type") or "")
     low, separator, high = (meta.get(f"{key}.range") or "").partition("..")
     if declared is None or not separator:
         return None

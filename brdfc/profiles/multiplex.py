@@ -1,30 +1,20 @@
 """The encoding of the published workflow: a MID and an MVIS, joined in the multiplex space.
 
 The MID passes the samples of a coefficient image on under their names; the MVIS takes them by name
-and evaluates the model to XYZ in the D50 profile connection space.
+and evaluates the model to XYZ; with wavelengths, to reflectances as well.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from brdfc.calc.program import Op, Program
-from brdfc.icc.header import D50, Header
+from brdfc.icc.header import Header
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import multiplex_space, n_channel_space
-from brdfc.icc.types import (
-    Dictionary,
-    LocalizedText,
-    NumberArray,
-    Pipeline,
-    Tag,
-    Utf8Array,
-    XYZArray,
-)
-
-COPYRIGHT = "No copyright is claimed for this profile."
+from brdfc.icc.types import NumberArray, Pipeline, Tag, Utf8Array
+from brdfc.profiles.content import Content
 
 
 @dataclass(frozen=True)
@@ -51,35 +41,27 @@ def mid_beside(mvis: Path) -> Path:
     return mvis.with_name(f"{base}mid{mvis.suffix}")
 
 
-def profile_pair(
-    title: str,
-    program: Program,
-    names: Sequence[str],
-    defaults: Sequence[float],
-    meta: Dictionary,
-) -> ProfilePair:
-    """Profiles for a program whose inputs are channels of these names and defaults."""
-    count = len(names)
-    channels = Utf8Array(tuple(names))
+def profile_pair(content: Content) -> ProfilePair:
+    """A MID that names the channels, and an MVIS that evaluates the program."""
+    count = len(content.names)
+    channels = Utf8Array(content.names)
     passing = Program(count, count, (Op("in", 0, count), Op("out", 0, count)))
     mid = Profile(
         Header("mid ", colour_space=n_channel_space(count), mcs=multiplex_space(count)),
         {
-            "desc": LocalizedText.english(f"{title} (coefficients)"),
-            "cprt": LocalizedText.english(COPYRIGHT),
+            **content.texts("coefficients"),
             "A2M0": Pipeline(count, count, (passing,)),
             "mcta": channels,
-            "meta": meta,
         },
     )
     tags: dict[str, Tag] = {
-        "desc": LocalizedText.english(f"{title} (appearance)"),
-        "cprt": LocalizedText.english(COPYRIGHT),
-        "M2B0": Pipeline(count, 3, (program,)),
+        **content.texts("appearance"),
+        "M2B0": content.colorimetric(),
         "mcta": channels,
-        "mdv ": NumberArray("fl32", tuple(defaults)),
-        "wtpt": XYZArray((D50,)),
-        "meta": meta,
+        "mdv ": NumberArray("fl32", content.defaults),
+        **content.colours(),
     }
-    mvis = Profile(Header("mvis", pcs=b"XYZ ", mcs=multiplex_space(count)), tags)
+    if content.grid is not None:
+        tags["M2S0"] = content.spectral()
+    mvis = Profile(content.header("mvis", mcs=multiplex_space(count)), tags)
     return ProfilePair(mid, mvis)

@@ -54,8 +54,17 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     """The known name a mistyped one most resembles, or None; for hints."""
     known = sorted(set(known))
     exact = [k for k in known if k.lower() == name.lower()]
-    close = exact or difflib.get_close_matches(name, known, n=1, cutoff=0.6)
-    return close[0] if close else None
+    close = exact or difflib.get_close_matches(name, known, n=9, cutoff=0.6)
+    # Of those that are as near, the one that begins alike: D55, not D75, for D56.
+    return max(close, key=lambda k: (_likeness(name, k), _common_start(name, k)), default=None)
+
+
+def _likeness(name: str, other: str) -> float:
+    return difflib.SequenceMatcher(None, other, name).ratio()
+
+
+def _common_start(name: str, other: str) -> int:
+    return next((i for i, (a, b) in enumerate(zip(name, other, strict=False)) if a != b), 0)
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str | None:

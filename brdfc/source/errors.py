@@ -6,6 +6,7 @@
     +-- ProgramError          a calculator program: its text, its bytes, or what verification found
     +-- ProfileError          a file that is not a well-formed ICC profile
     +-- LinkError             profiles that do not connect
+    +-- SpectrumError         a table of a spectrum or of colour matching functions
     +-- ImageError            an image that cannot be read, applied or written
     +-- SelfCheckError        a compiled program that does not agree with its model
     +-- MissingExtraError     an optional package that this needs is not installed
@@ -56,6 +57,10 @@ class ProfileError(BrdfcError):
 
 class LinkError(BrdfcError):
     """Profiles that do not connect."""
+
+
+class SpectrumError(BrdfcError):
+    """A table that is no spectrum, or a spectrum that does not fit what it is used with."""
 
 
 class ImageError(BrdfcError):

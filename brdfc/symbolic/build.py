@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import reduce
@@ -43,20 +43,26 @@ _BINARY = {
 
 
 def build(
-    definition: Definition, values: Mapping[str, tuple[float, ...]], *, free: bool = False
+    definition: Definition,
+    values: Mapping[str, tuple[float, ...]],
+    *,
+    free: bool = False,
+    leave: Collection[str] = (),
 ) -> Expression:
     """The expression of a definition without parameters, usually a model's radiance.
 
     values: what is fixed at compile time, one number a component, angles in radians. Quantities
-    that are constants by role and absent from values take their default; free leaves them open.
+    that are constants by role and absent from values take their default; free leaves them open, and
+    leave those of these names.
     """
-    return _Builder(values, free).definition(definition)
+    return _Builder(values, free, leave).definition(definition)
 
 
 @dataclass
 class _Builder:
     values: Mapping[str, tuple[float, ...]]
     free: bool
+    leave: Collection[str]
     done: dict[int, Expression] = field(default_factory=dict)
     steps: int = 0
 
@@ -117,7 +123,8 @@ class _Builder:
 
     def quantity(self, symbol: Quantity) -> Expression:
         fixed = self.values.get(symbol.name)
-        if fixed is None and symbol.role is Role.CONSTANT and not self.free:
+        left = self.free or symbol.name in self.leave
+        if fixed is None and symbol.role is Role.CONSTANT and not left:
             fixed = symbol.default
         if fixed is None:
             return quantity(symbol.name, symbol.type.value.width)

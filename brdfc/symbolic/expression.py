@@ -9,7 +9,7 @@ component. Nothing here simplifies: what is written is what stands, until a name
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from weakref import WeakValueDictionary
@@ -89,6 +89,11 @@ def rebuild(expression: Expression, arguments: Sequence[Expression]) -> Expressi
     return make(expression.operator, *arguments)
 
 
+def constant_vector(values: Sequence[float]) -> Expression:
+    """Numbers side by side, exactly."""
+    return vector([const(Fraction(value)) for value in values])
+
+
 def walk(root: Expression) -> Iterator[Expression]:
     """Every expression below root once, arguments before what uses them."""
     seen: set[Expression] = set()
@@ -101,6 +106,16 @@ def walk(root: Expression) -> Iterator[Expression]:
             seen.add(expression)
             waiting.append((expression, True))
             waiting += [(a, False) for a in reversed(expression.arguments)]
+
+
+def substituted(root: Expression, new: Mapping[Expression, Expression]) -> Expression:
+    """The expression with some parts, wherever they occur, replaced by others."""
+    if not new:
+        return root
+    done: dict[Expression, Expression] = {}
+    for e in walk(root):
+        done[e] = new[e] if e in new else rebuild(e, [done[a] for a in e.arguments])
+    return done[root]
 
 
 def whole_exponent(e: Expression) -> int | None:
@@ -158,5 +173,6 @@ def describe(expression: Expression, levels: int = 5) -> str:
     if operator == "where":
         return f"({texts[1]} where {texts[0]} else {texts[2]})"
     if operator == "component":
-        return f"{texts[0]}.{'xyz'[expression.index]}"
+        index = expression.index
+        return f"{texts[0]}.{'xyz'[index]}" if index < 3 else f"{texts[0]}[{index}]"
     return f"{'' if operator == 'vector' else operator}({', '.join(texts)})"

@@ -14,6 +14,7 @@ import tifffile
 from cli_process import run
 
 import brdfc
+from brdfc.colour.difference import D50
 
 ROOT = Path(__file__).parents[2]
 GLOSS = """model gloss "Lambert with a gloss that grows with the angle"
@@ -28,6 +29,19 @@ radiance = cos(incident)*Rd/pi + g*radians(abs(incident))
 
 example incident=0deg Rd=1 g=1 -> (0.318309886, 0.318309886, 0.318309886) within 1e-8
 """
+
+
+def ward_at_40_and_minus_10() -> list[float]:
+    """X, Y, Z of Rd = (0.1, 0.2, 0.6), ks = 0.05, m = 0.15 in float64: the light is D50, and so is
+    the highlight."""
+    ci, cr = math.cos(math.radians(40)), math.cos(math.radians(10))
+    tangent = math.tan(math.radians(25))
+    lobe = math.exp(-((tangent / 0.15) ** 2)) / (4 * math.pi * 0.15**2)
+    highlight = 0.05 / math.sqrt(ci * cr) * lobe
+    return [ci * (r / math.pi + highlight * w) for r, w in zip((0.1, 0.2, 0.6), D50, strict=True)]
+
+
+WARD = ward_at_40_and_minus_10()
 
 
 @pytest.fixture(scope="module")
@@ -182,7 +196,7 @@ def test_eval_prints_nine_digits_a_line_a_pixel(ward: tuple[Path, Path]) -> None
     done = run("eval", *ward, *arguments, *pixels)
     assert done.returncode == 0, done.stderr
     lines = [[float(word) for word in line.split()] for line in done.stdout.splitlines()]
-    assert lines[0] == pytest.approx([0.0243938592, 0.0487778111, 0.146313619], rel=3e-7)
+    assert lines[0] == pytest.approx(WARD, rel=3e-7)
     assert len(lines) == 2
     as_json = json.loads(run("eval", *ward, *arguments, *pixels, "--json").stdout)
     assert as_json == {"channels": ["Rdx", "Rdy", "Rdz", "ks", "m"], "xyz": lines}
@@ -327,8 +341,9 @@ def test_a_model_of_ones_own_compiles_and_evaluates(tmp_path: Path) -> None:
     pixel = ["--pixel", "0.1,0.2,0.6,0.5", "--env", "incident=-60deg"]
     done = run("eval", "gloss_mid.icc", "gloss_mvis.icc", *pixel, cwd=tmp_path)
     xyz = [float(word) for word in done.stdout.split()]
-    gloss = 0.5 * math.pi / 3
-    assert xyz == pytest.approx([v * 0.5 / math.pi + gloss for v in (0.1, 0.2, 0.6)], rel=2e-7)
+    gloss, diffuse = 0.5 * math.pi / 3, [0.5 * v / math.pi for v in (0.1, 0.2, 0.6)]
+    under_d50 = [d + gloss * w for d, w in zip(diffuse, D50, strict=True)]
+    assert xyz == pytest.approx(under_d50, rel=2e-7)
 
 
 def test_angles_may_come_with_the_pixel(tmp_path: Path) -> None:
@@ -345,4 +360,4 @@ def test_angles_may_come_with_the_pixel(tmp_path: Path) -> None:
     done = run("apply", "w_mid.icc", "w_mvis.icc", "c.tif", "-o", "xyz.tif", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     xyz = tifffile.imread(tmp_path / "xyz.tif")
-    assert xyz[0, 0] == pytest.approx([0.0243938592, 0.0487778111, 0.146313619], rel=3e-7)
+    assert xyz[0, 0] == pytest.approx(WARD, rel=3e-7)

@@ -43,9 +43,9 @@ def test_accuracy_costs_and_pays() -> None:
 
 
 def test_a_largest_error_is_kept() -> None:
-    compiled = brdfc.compile(brdfc.load("ward"), max_error="20ulp")
+    compiled = brdfc.compile(brdfc.load("ward"), max_error="24ulp")
     assert compiled.form is not None
-    assert 2 ** compiled.form.derivation[-1].measured.bits - 1 <= 20
+    assert 2 ** compiled.form.derivation[-1].measured.bits - 1 <= 24
 
 
 def test_the_same_bytes_with_and_without_the_cache() -> None:

@@ -13,7 +13,8 @@ import brdfc
 from brdfc.calc.program import Matrix, Op, Program
 from brdfc.calc.text import assemble
 from brdfc.icc.profile import Profile
-from brdfc.icc.types import Dictionary, NumberArray, Pipeline, Utf8Array
+from brdfc.icc.types import NumberArray, Pipeline, Utf8Array
+from brdfc.profiles.content import Content
 from brdfc.profiles.multiplex import profile_pair
 from brdfc.source.errors import BrdfcError, LinkError, ProgramError, ValueGivenError
 
@@ -28,7 +29,9 @@ def ward() -> brdfc.Compiled:
 def pair(text: str, names: list[str], defaults: list[float] | None = None):
     """A MID and an MVIS around a calculator text."""
     program = Program(len(names), 3, assemble(text))
-    return profile_pair("test", program, names, defaults or [0.0] * len(names), Dictionary(()))
+    return profile_pair(
+        Content("test", program, tuple(names), tuple(defaults or [0.0] * len(names)))
+    )
 
 
 def with_tags(profile: Profile, **tags: object) -> Profile:
@@ -53,7 +56,7 @@ def test_the_public_interface_in_one_breath(tmp_path: Path) -> None:
 def test_channels_connect_by_name_in_any_order(ward: brdfc.Compiled) -> None:
     order = [4, 0, 3, 2, 1]
     names = [ward.roles.channel_names[i] for i in order]
-    mixed = profile_pair("m", ward.program, names, [0.0] * 5, Dictionary(())).mid
+    mixed = profile_pair(Content("m", ward.program, tuple(names), (0.0,) * 5)).mid
     expected = brdfc.connect(ward.mid, ward.mvis).apply(PIXEL)
     result = brdfc.connect(mixed, ward.mvis).apply([PIXEL[i] for i in order])
     np.testing.assert_array_equal(result, expected)

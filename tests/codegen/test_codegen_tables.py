@@ -20,7 +20,7 @@ from brdfc.codegen.select import Binding, ChannelBinding, VariableBinding, selec
 from brdfc.codegen.tables import clut_program, curve_program
 from brdfc.colour.difference import ciede2000
 from brdfc.engine.interpreter import run
-from brdfc.icc.types import Dictionary
+from brdfc.profiles.content import Content
 from brdfc.profiles.multiplex import profile_pair
 from brdfc.roles import assign_roles
 from brdfc.source.errors import BrdfcError
@@ -220,7 +220,7 @@ def test_the_reference_engine_agrees(tmp_path, name: str) -> None:
         curve_program(f.prepared, f.domain, bindings, 256),
     ):
         names = [f"c{i}" for i in range(program.inputs)]
-        pair = profile_pair("T", program, names, [0.0] * len(names), Dictionary(()))
+        pair = profile_pair(Content("T", program, tuple(names), (0.0,) * len(names)))
         mid, mvis = pair.save(tmp_path / "t_mvis.icc")
         assert reference.validate(mvis)[0] in ("OK", "warning")
         theirs = reference.apply(mid, mvis, values).xyz[0]

@@ -9,7 +9,7 @@ import numpy as np
 
 from brdfc.calc.program import Op, Program, Select
 from brdfc.cmm import reference
-from brdfc.icc.types import Dictionary
+from brdfc.profiles.content import Content
 from brdfc.profiles.multiplex import profile_pair
 
 
@@ -26,13 +26,8 @@ def dispatcher(programs):
 def judged(folder, programs, pixels, environments=({},)):
     """The reference's results, still encoded: (environments, programs, pixels, 3), float32."""
     count = programs[0].inputs + 1
-    pair = profile_pair(
-        "Judge",
-        dispatcher(programs),
-        [f"c{i}" for i in range(count)],
-        [0.0] * count,
-        Dictionary(()),
-    )
+    names = tuple(f"c{i}" for i in range(count))
+    pair = profile_pair(Content("Judge", dispatcher(programs), names, (0.0,) * count))
     mid, mvis = pair.save(folder / "judge_mvis.icc")
     number = np.repeat(np.arange(len(programs), dtype=np.float32), len(pixels))
     every = np.column_stack([number, np.tile(pixels, (len(programs), 1))])

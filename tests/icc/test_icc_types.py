@@ -44,7 +44,7 @@ TAGS = {
     "mpet": Pipeline(3, 3, (*COPY.elements, MATRIX)),
     "mpet unknown": Pipeline(3, 3, (UNKNOWN, MATRIX)),
     "mpet identity": Pipeline(4, 4, ()),
-    "svcn": Opaque(b"svcn" + bytes(9)),
+    "gbd ": Opaque(b"gbd " + bytes(9)),
 }
 
 

@@ -82,9 +82,7 @@ def problem(name: str, **fixed: str) -> Problem:
 
 def worst(p: Problem, ranges: Ranges) -> float:
     at = strata(ranges.domain, p.quantities, 200)
-    measured = Judge(p.exact, at, p.quantities, p.bindings).measure(
-        select(guarded(p.start, ranges)[0], p.bindings)
-    )
+    measured = Judge(p, at).measure(select(guarded(p.start, ranges)[0], p.bindings))
     assert measured is not None
     return measured.bits
 

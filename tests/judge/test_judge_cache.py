@@ -14,6 +14,7 @@ from brdfc.calc import prices as price_table
 from brdfc.calc.binary import encode_element
 from brdfc.calc.program import Program
 from brdfc.calc.text import assemble
+from brdfc.colour.colorimetry import Colorimetry
 from brdfc.compiler import compile_model, prepare, problem_of
 from brdfc.judge import cache
 from brdfc.judge.cache import folder, holds, key, recall, remember, summary
@@ -161,6 +162,7 @@ def test_the_key_changes_with_whatever_a_search_depends_on(
         key(replace(ward, formula=Formula(other, domain)), AIM, 20),
         key(replace(ward, formula=Formula(ward.exact, narrow)), AIM, 20),
         key(replace(ward, quantities=ward.quantities[::-1]), AIM, 20),
+        key(replace(ward, colorimetry=Colorimetry((0.97, 1.0, 0.484))), AIM, 20),
         key(ward, GOALS["speed"], 20),
         key(ward, Goal("ulp", 8.0), 20),
         key(ward, AIM, 21),

@@ -43,7 +43,7 @@ def ward_judge() -> Judge:
     every = points(domain, p.quantities, 20_000)
     lobe = np.isin(every.strata, ("lobe", "grazing lobe"))
     at = Points({n: v[lobe] for n, v in every.values.items()}, ("lobe",) * int(lobe.sum()))
-    return Judge(p.exact, at, p.quantities, p.bindings)
+    return Judge(p, at)
 
 
 def ward_with(form: str | None) -> Measured:
@@ -98,7 +98,7 @@ def test_known_bad_forms_of_ward_are_as_bad_as_known(form: str, least: float, mo
 
 def test_a_wrong_constant_is_no_failure_but_a_colour_difference() -> None:
     p = problem("lambert")
-    judge = Judge(p.exact, points(p.ranges.domain, p.quantities, FEW), p.quantities, p.bindings)
+    judge = Judge(p, points(p.ranges.domain, p.quantities, FEW))
     node = select(guarded(make("mul", p.start, const(2)), p.ranges)[0], p.bindings)
     found = judge.measure(node)
     assert found is not None
@@ -109,7 +109,7 @@ def test_a_wrong_constant_is_no_failure_but_a_colour_difference() -> None:
 @pytest.mark.parametrize("broken", [np.nan, np.inf, 0.0])
 def test_nan_infinity_and_false_zeros_fail(broken: float) -> None:
     p = problem("lambert")
-    judge = Judge(p.exact, points(p.ranges.domain, p.quantities, FEW), p.quantities, p.bindings)
+    judge = Judge(p, points(p.ranges.domain, p.quantities, FEW))
     values = judge.graphs.values(select(guarded(p.start, p.ranges)[0], p.bindings)).copy()
     assert judge.figures(values, 1.0) is not None
     values[np.argmax(judge.truth[:, 0]), 0] = broken
@@ -120,7 +120,7 @@ def test_nan_infinity_and_false_zeros_fail(broken: float) -> None:
 def test_values_of_a_graph_are_those_of_its_program(name: str) -> None:
     p = problem(name)
     at = points(p.ranges.domain, p.quantities, 8)
-    graphs = Judge(p.exact, at, p.quantities, p.bindings).graphs
+    graphs = Judge(p, at).graphs
     node = select(guarded(p.start, p.ranges)[0], p.bindings)
     expected = graphs.values(node)
     program: Program = schedule(node, p.inputs)

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import brdfc
+from brdfc.colour.difference import D50
 from brdfc.icc.types import Dictionary, NumberArray, Utf8Array
 from brdfc.icc.validate import validate
 from brdfc.lang.load import load_text
@@ -33,7 +34,9 @@ def test_channels_keep_the_order_of_their_declaration(ward: brdfc.Compiled) -> N
 
 
 def test_defaults_are_the_models(ward: brdfc.Compiled) -> None:
-    assert ward.mvis.tags["mdv "] == NumberArray("fl32", (0.5, 0.5, 0.5, 0.05, 0.15))
+    """A diffuse reflectance of one half is half of the white."""
+    grey = tuple(0.5 * v for v in D50)
+    assert ward.mvis.tags["mdv "] == NumberArray("fl32", (*grey, 0.05, 0.15))
 
 
 def test_profiles_keep_the_rules(ward: brdfc.Compiled) -> None:

@@ -1,0 +1,230 @@
+"""From the connection space of a profile to colours for a purpose: XYZ, CIELAB or sRGB.
+
+    reflectances --observer, light--> XYZ under the light --c2sp--> XYZ under D50
+        --adaptation--> XYZ under another white --> CIELAB, or sRGB
+
+A profile with a light of its own states how its colours come to D50 (`c2sp`), and its reflectances
+become colours under any light.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from brdfc.cmm.link import Link, pipeline, run_pipeline
+from brdfc.colour.adaptation import adaptation_matrix, adaptation_transform
+from brdfc.colour.conditions import (
+    ViewingConditions,
+    normalised_white,
+    viewing_conditions,
+)
+from brdfc.colour.difference import D50, lab
+from brdfc.colour.picture import srgb
+from brdfc.colour.spectrum import Grid
+from brdfc.icc.header import D50 as HEADER_D50
+from brdfc.icc.profile import Profile
+from brdfc.icc.types import Pipeline
+from brdfc.profiles.conditions import stated_conditions
+from brdfc.source.diagnostics import did_you_mean
+from brdfc.source.errors import LinkError, ValueGivenError
+
+XYZ = tuple[float, float, float]
+Array = NDArray[np.float64]
+
+
+class Target(Enum):
+    """What colours are rendered to."""
+
+    XYZ = "XYZ"
+    LAB = "Lab"
+    SRGB = "sRGB"
+    SPECTRUM = "spectrum"
+
+
+def target(text: str) -> Target:
+    """The target a user means; ValueGivenError, with the nearest, for another text."""
+    for found in Target:
+        if found.value.lower() == text.strip().lower():
+            return found
+    known = [t.value for t in Target]
+    raise ValueGivenError(
+        f"'{text}' is nothing to render to", hint=did_you_mean(text, known) or ", ".join(known)
+    )
+
+
+@dataclass(frozen=True)
+class Rendering:
+    """A link, and what becomes of its values.
+
+    white: of the XYZ that comes out, or that CIELAB is relative to. observer: the matrix from
+    reflectances to XYZ, if they are; to_standard: the profile's own way to D50, if it is taken;
+    adaptation: the matrix after that, if any.
+    """
+
+    link: Link
+    to: Target
+    white: XYZ
+    observer: Array | None = None
+    to_standard: Pipeline | None = None
+    adaptation: Array | None = None
+    note: str = ""
+
+    @property
+    def samples(self) -> int:
+        """Numbers a pixel of the result has."""
+        return self.link.outputs if self.to is Target.SPECTRUM else 3
+
+    @property
+    def dtype(self) -> Any:
+        """Of the result: 8 bits for sRGB, float32 for all else."""
+        return np.uint8 if self.to is Target.SRGB else np.float32
+
+    def apply(self, pixels: ArrayLike) -> NDArray[Any]:
+        """(..., samples) for pixels (..., channels)."""
+        return self.counted(pixels)[0]
+
+    def counted(self, pixels: ArrayLike) -> tuple[NDArray[Any], int]:
+        """The same, and how many pixels lay outside what sRGB can show; those are clipped to it,
+        component by component."""
+        values = self.link.apply(pixels)
+        if self.to is Target.SPECTRUM:
+            return values, 0
+        if self.observer is None and self.to_standard is None and self.adaptation is None:
+            exact = values.astype(np.float64)
+        else:
+            exact = self._colours(values)
+        if self.to is Target.SRGB:
+            return srgb(exact)
+        if self.to is Target.LAB:
+            exact = lab(exact, self.white)
+        return exact.astype(np.float32), 0
+
+    def _colours(self, values: NDArray[np.float32]) -> Array:
+        exact: Array = values.astype(np.float64)
+        if self.observer is not None:
+            exact = exact @ self.observer.T
+        if self.to_standard is not None:
+            exact = run_pipeline(self.to_standard, exact, {}).astype(np.float64)
+        if self.adaptation is not None:
+            exact = exact @ self.adaptation.T
+        return exact
+
+
+def rendering(
+    link: Link,
+    to: Target | str = Target.XYZ,
+    adapt: str | None = None,
+    conditions: ViewingConditions | None = None,
+    transform: str = "bradford",
+) -> Rendering:
+    """What becomes of a link's values.
+
+    to: a Target, or its name. adapt: the white that colours are adapted to: the name of an
+    illuminant, X,Y,Z, or None for the profile's own; sRGB has D65, and needs none. conditions: the
+    light and the observer that reflectances are seen with; the profile's own where None.
+    transform: how colours are adapted where the profile does not say (see adaptation.TRANSFORMS).
+
+    Raises LinkError where a profile does not say enough of its colours, and ValueGivenError for
+    what makes no sense of this profile.
+    """
+    to = target(to) if isinstance(to, str) else to
+    spectral = link.transform.startswith("M2S")
+    if to is Target.SPECTRUM:
+        if not spectral:
+            raise LinkError("the profile has no reflectances to give", hint=_SPECTRAL)
+        if adapt is not None or conditions is not None:
+            raise ValueGivenError("a light or an adaptation changes no reflectances")
+        return Rendering(link, to, (1.0, 1.0, 1.0), note="reflectances")
+    if conditions is not None and not spectral:
+        raise LinkError(
+            "another light or observer needs reflectances, and the profile has none",
+            hint=_SPECTRAL,
+        )
+    if spectral:
+        found = _of_reflectances(link, to, conditions)
+    else:
+        found = Rendering(link, to, profile_white(link.profile))
+    return _adapted(found, adapt, adaptation_transform(transform))
+
+
+_SPECTRAL = "compile the model with --spectral 400nm..700nm,10nm"
+
+
+def profile_white(profile: Profile) -> XYZ:
+    """The white of a profile's XYZ: of its viewing conditions, or of its header."""
+    stated = stated_conditions(profile)
+    if stated is not None:
+        return stated.white
+    white = profile.header.illuminant
+    if white == HEADER_D50:
+        return D50
+    if not min(white) > 0:
+        raise LinkError(f"the profile's illuminant is {white}: no light has that")
+    return white
+
+
+def spectral_grid(profile: Profile) -> Grid:
+    """The wavelengths of a profile's reflectances; LinkError where it has none."""
+    found = profile.header.spectral_range
+    if profile.header.spectral_pcs[:2] != b"rs" or found.steps < 2 or found.start >= found.end:
+        raise LinkError("the profile's spectral connection space is not one of reflectances")
+    return Grid(found.start, found.end, found.steps)
+
+
+def _of_reflectances(link: Link, to: Target, conditions: ViewingConditions | None) -> Rendering:
+    seen = conditions or stated_conditions(link.profile) or viewing_conditions()
+    matrix = seen.reflectances_to_xyz(spectral_grid(link.profile))
+    if matrix.shape[1] != link.outputs:
+        raise LinkError(f"{link.outputs} reflectances at {matrix.shape[1]} wavelengths")
+    return Rendering(link, to, seen.white, observer=matrix, note=f"under {seen}")
+
+
+def _adapted(found: Rendering, adapt: str | None, transform: str) -> Rendering:
+    if found.to is Target.SRGB:
+        if adapt is not None and adapt.strip().upper() != "D65":
+            raise ValueGivenError(f"sRGB is seen under D65, not {adapt}", hint="leave out --adapt")
+        adapt = "D50"  # where the conversion to sRGB, which adapts to D65, starts from
+    if adapt is None:
+        return found
+    name, white = _white(adapt)
+    if found.white != D50 and found.observer is None:
+        found = replace(found, to_standard=_to_standard(found), white=D50)
+    if white != found.white:
+        matrix = adaptation_matrix(found.white, white, transform)
+        found = replace(found, adaptation=matrix, white=white)
+    said = "" if found.to is Target.SRGB else f"adapted to {name}"
+    return replace(found, note=", ".join(part for part in (found.note, said) if part))
+
+
+def _to_standard(found: Rendering) -> Pipeline:
+    profile = found.link.profile
+    if not isinstance(profile.tags.get("c2sp"), Pipeline):
+        white = ", ".join(f"{v:.4g}" for v in found.white)
+        raise LinkError(
+            f"the profile's light has the white ({white}), and the profile does not say how its "
+            "colours come to another: it has no viewing conditions ('svcn', 'c2sp')",
+            hint="compile it with --white or --illuminant",
+        )
+    way = pipeline(profile, "c2sp")
+    if (way.inputs, way.outputs) != (3, 3):
+        raise LinkError(f"'c2sp' takes {way.inputs} values to {way.outputs}, not 3 to 3")
+    return way
+
+
+def _white(text: str) -> tuple[str, XYZ]:
+    """The name of a white, and X, Y, Z."""
+    words = text.split(",")
+    if len(words) == 1:
+        return text.strip(), viewing_conditions(light=text).white
+    try:
+        numbers = [float(word) for word in words]
+    except ValueError:
+        raise ValueGivenError(
+            f"'{text}' is no white", hint="name an illuminant, or give three numbers X,Y,Z"
+        ) from None
+    return text, normalised_white(numbers)
