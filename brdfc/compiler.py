@@ -13,7 +13,7 @@ from brdfc.calc.program import Program
 from brdfc.calc.text import disassemble
 from brdfc.colour.colorimetry import XYZ_UNDER_D50, Colorimetry
 from brdfc.colour.conditions import ViewingConditions
-from brdfc.colours import Colours, bands, colours_of
+from brdfc.colours import bands, colours_of
 from brdfc.encodings import Encoding, encoded, encoding
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import Dictionary
@@ -24,10 +24,11 @@ from brdfc.judge.goals import Goal, goal
 from brdfc.judge.problem import Problem
 from brdfc.judge.samples import sample
 from brdfc.judge.selfcheck import LIMIT, Verdict, self_check
-from brdfc.lang.model import Model
+from brdfc.lang.model import Model, Quantity
+from brdfc.layouts import Layout, device_quantities, layout, pixel_quantities, profiles
 from brdfc.profiles.content import Content
 from brdfc.profiles.metadata import metadata, value_text
-from brdfc.profiles.multiplex import ProfilePair, profile_pair
+from brdfc.profiles.multiplex import ProfilePair
 from brdfc.roles import Roles, Value, assign_roles
 from brdfc.source.errors import BrdfcError, SelfCheckError, ValueGivenError
 from brdfc.symbolic.formula import NO_WHITE, Formula, formula
@@ -58,24 +59,33 @@ class Compiled:
     program: Program
     price: float
     verdict: Verdict
-    pair: ProfilePair
+    layout: Layout
+    profiles: tuple[Profile, ...]
 
     @property
     def mid(self) -> Profile:
-        return self.pair.mid
+        """The profile that takes device values: the MID, or the only one."""
+        return self.profiles[0]
 
     @property
     def mvis(self) -> Profile:
-        return self.pair.mvis
+        """The profile that gives colours: the MVIS, or the only one."""
+        return self.profiles[-1]
 
     @property
     def text(self) -> str:
-        """The calculator text of the MVIS."""
+        """The calculator text of the program."""
         return disassemble(self.program.body)
 
-    def save(self, mvis: str | Path, mid: str | Path | None = None) -> tuple[Path, Path]:
-        """Write both profiles; see ProfilePair.save."""
-        return self.pair.save(mvis, mid)
+    def save(self, path: str | Path, mid: str | Path | None = None) -> tuple[Path, ...]:
+        """Write the profiles; the MID beside the MVIS unless said where (see ProfilePair.save).
+        Returns their paths, the MID's first."""
+        if len(self.profiles) == 2:
+            return ProfilePair(self.mid, self.mvis).save(path, mid)
+        if mid is not None:
+            raise ValueGivenError(f"'{self.layout.name}' has one profile and no MID")
+        self.mvis.save(path)
+        return (Path(path),)
 
 
 def compile_model(
@@ -89,17 +99,21 @@ def compile_model(
     encode: str = "calc",
     conditions: ViewingConditions | None = None,
     highlight: str | None = None,
+    angles: str | None = None,
+    parameters: str | None = None,
     cache: bool = True,
     progress: Progress = _silent,
 ) -> Compiled:
-    """Compile a model to a MID and an MVIS.
+    """Compile a model to a MID and an MVIS, or to one profile.
 
     set: quantities fixed now, by name or four-letter signature: numbers (radians for angles, one
     a component), or text as on the command line ("40deg"). channels: variables or constants that
     come with each pixel instead. optimize: "speed", "balanced" or "accuracy"; max_error ("0.01dE",
     "8ulp") overrides it. effort: equivalent forms measured at most (None: about 300); 1 keeps the
     formula as it is written. encode: "calc", or with every variable fixed "clut:17" (a lookup
-    table) or "curve:1024" (a calculator with sampled curves). conditions: the light and the
+    table) or "curve:1024" (a calculator with sampled curves); and a layout: "mcs" (the usual MID
+    and MVIS), "ncolour", "brdf-function" or "brdf-struct", see layouts.py, where angles and
+    parameters are explained too. conditions: the light and the
     observer of the model's colours (None: D50, and the profile says no more). highlight: "light",
     where a highlight without colour has the light's, or "equal", where it adds the same to X, Y
     and Z (None: as the model says, most say the light's). cache: use and keep searches on
@@ -109,8 +123,11 @@ def compile_model(
     model.
     """
     aim, how = goal(optimize, max_error), encoding(encode)
+    arrangement = layout(how.layout, model, angles, parameters)
+    fixed = set or {}
+    pixel = (*channels, *(n for n in pixel_quantities(arrangement, model) if n not in fixed))
     colours = colours_of(model, conditions, highlight)
-    roles, ready = prepare(model, set or {}, channels, cache, colours.formula_white)
+    roles, ready = prepare(model, fixed, pixel, cache, colours.formula_white)
     problem = problem_of(roles, ready, colours.colorimetry)
     form = _search(problem, aim, effort, cache, progress)
     if form is not None and how.kind == "calc":
@@ -131,7 +148,9 @@ def compile_model(
             raise
         hint = "take more points, or allow more with --max-error 0.1dE"
         raise SelfCheckError(error.message, hint=hint) from None
-    meta = _metadata(model, roles, colours, program, cost, verdict, form, limit, how)
+    stated = {**colours.facts(), **arrangement.facts()}
+    own = device_quantities(arrangement, roles)
+    meta = _metadata(model, roles, own, stated, program, cost, verdict, form, limit, how)
     content = Content(
         model.title,
         program,
@@ -141,8 +160,10 @@ def compile_model(
         colours.conditions,
         colours.grid,
     )
-    pair = profile_pair(content)
-    return Compiled(model, roles, ready, aim, form, guards, program, cost, verdict, pair)
+    made = profiles(arrangement, model, roles, content, colours)
+    return Compiled(
+        model, roles, ready, aim, form, guards, program, cost, verdict, arrangement, made
+    )
 
 
 def explore_model(
@@ -233,7 +254,8 @@ def _search(
 def _metadata(
     model: Model,
     roles: Roles,
-    colours: Colours,
+    channels: Sequence[Quantity],
+    stated: Mapping[str, str],
     program: Program,
     cost: float,
     verdict: Verdict,
@@ -248,7 +270,7 @@ def _metadata(
         "selfcheck": f"CIEDE2000 below {limit:g} at {verdict.points} points of the domain",
         "encoding": str(how),
         "compiler": f"brdfc {__version__}",
-        **colours.facts(),
+        **stated,
     }
     table = prices_in_use()
     if table is not None:  # another table may choose another form, so the profile says so
@@ -259,4 +281,4 @@ def _metadata(
         facts["form.error"] = (
             f"{last.bits:.1f} bits, CIEDE2000 {last.de:.0e} at worst of {form.points} points"
         )
-    return metadata(model, roles.channels, roles.variables, constants, facts)
+    return metadata(model, channels, roles.variables, constants, facts)

@@ -62,7 +62,7 @@ def contact_sheet(rows: list[np.ndarray], path: Path) -> int:
     clipped = 0
     for row, ((incident, reflection), xyz) in enumerate(zip(ANGLES, rows, strict=True)):
         picture, outside = srgb(xyz)
-        clipped += outside
+        clipped += int(outside.sum())
         y = top + row * (HEIGHT + gap)
         sheet.paste(Image.fromarray(picture), (left, y))
         draw.text((8, y + HEIGHT // 2 - 14), f"light {incident} deg", fill="white")

@@ -24,11 +24,12 @@ ORDER = [
     "cmm",
     "images",
     "charts",
+    "pictures",
     "cli",
 ]
 ANYWHERE = {"data", "files", ""}
 """Modules of the package itself that every stage may use: data files, whole files, the version."""
-TOP = {"cli"}
+TOP = {"pictures", "cli"}
 """The folders that may use what joins the stages (compiler, checker)."""
 
 

@@ -1,32 +1,19 @@
-"""The picture: price against worst bits, and price against worst CIEDE2000, with matplotlib.
-
-matplotlib is an optional package, so this module is imported only where a picture is drawn. Its
-objects are used directly: pyplot would take half a second more, and keep state between pictures.
-"""
+"""The picture: price against worst bits, and price against worst CIEDE2000, with matplotlib."""
 
 from __future__ import annotations
 
-import io
 import textwrap
 from collections.abc import Sequence
 
-import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from brdfc.charts.naming import name_points
 from brdfc.charts.points import AS_WRITTEN, Point, front
+from brdfc.charts.saved import BLUE, GREEN, GREY, PURPLE, SHAPES, VERMILION, saved
 from brdfc.charts.scales import shown_value, style_axes
 
-# Okabe and Ito's colours: people who do not see all hues tell them apart. Shapes differ too.
-GREY, BLUE, VERMILION, GREEN, PURPLE = "#8a8a8a", "#0072B2", "#D55E00", "#009E73", "#CC79A7"
-SHAPES = "o^vPX"
-"""A shape a layer; the sixth layer begins anew."""
-NO_DATE = {
-    "svg": {"Date": None, "Creator": None, "Format": None, "Type": None},
-    "png": {"Software": None},
-}
 _PANELS = (
     ("bits", "Accuracy in float32: worst error, in bits"),
     ("de", "Accuracy to the eye: worst colour difference"),
@@ -35,15 +22,7 @@ _PANELS = (
 
 def rendered(points: Sequence[Point], title: str, kind: str) -> bytes:
     """The picture as the bytes of a file of that kind ("svg" or "png")."""
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()  # whatever the user has set up for other pictures
-        matplotlib.rc("font", size=9.0)
-        matplotlib.rc("axes.spines", top=False, right=False)
-        # Without a salt the names inside an SVG are random; paths look the same without the font.
-        matplotlib.rc("svg", hashsalt="brdfc", fonttype="path")
-        picture = io.BytesIO()
-        _figure(points, title).savefig(picture, format=kind, dpi=160, metadata=NO_DATE[kind])
-        return picture.getvalue()
+    return saved(lambda: _figure(points, title), kind, 9.0, frame=False)
 
 
 def mark_id(error: str, index: int) -> str:

@@ -1,11 +1,10 @@
 """The picture of a stability report: worst error over the plane of the two angles.
 
-Programs stand side by side in one scale of colours. matplotlib is used as in figure.py.
+Programs stand side by side in one scale of colours.
 """
 
 from __future__ import annotations
 
-import io
 import math
 import textwrap
 from collections.abc import Sequence
@@ -19,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.patches import Patch
 
-from brdfc.charts.figure import NO_DATE, VERMILION
+from brdfc.charts.saved import VERMILION, saved
 from brdfc.judge.error_map import ErrorMap
 from brdfc.judge.measure import SEEN
 
@@ -32,14 +31,7 @@ def rendered_map(
     errors: ErrorMap, methods: Sequence[tuple[str, str]], title: str, kind: str
 ) -> bytes:
     """The picture as the bytes of a file of that kind ("svg" or "png")."""
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rc("font", size=9.5)
-        matplotlib.rc("svg", hashsalt="brdfc", fonttype="path")
-        picture = io.BytesIO()
-        figure = _figure(errors, methods, title)
-        figure.savefig(picture, format=kind, dpi=160, metadata=NO_DATE[kind])
-        return picture.getvalue()
+    return saved(lambda: _figure(errors, methods, title), kind)
 
 
 _LEFT, _RIGHT, _BOTTOM = 0.65, 1.5, 0.95

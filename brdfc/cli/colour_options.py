@@ -150,7 +150,7 @@ def rendered(
 
     wanted = target(to)  # what cannot be is refused before a profile is read
     conditions = stated_viewing(illuminant, None, observer, None, None, None)
-    if transform is None and len(profiles) > 1 and (conditions or wanted is Target.SPECTRUM):
-        transform = "M2S0"
+    if transform is None and (conditions or wanted is Target.SPECTRUM):
+        transform = "M2S0" if len(profiles) > 1 else "D2B1"
     link = connected(profiles, environment, transform)
     return rendering(link, wanted, adapt, conditions, adaptation)

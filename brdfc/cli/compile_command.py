@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
 @click.command("compile")
 @click.argument("model")
-@click.option("-o", "output", required=True, metavar="FILE", help="The MVIS profile to write.")
+@click.option(
+    "-o", "output", required=True, metavar="FILE", help="The profile to write (the MVIS)."
+)
 @click.option("--mid", metavar="FILE", help="The MID profile; default: beside the MVIS.")
 @click.option(
     "--set",
@@ -34,9 +36,25 @@ if TYPE_CHECKING:
 @click.option(
     "--encode",
     default="calc",
-    metavar="calc|clut:N|curve:N",
-    help="A calculator program (default), a lookup table of N points a channel, or a calculator "
-    "with curves of N points; the last two need every variable fixed with --set.",
+    metavar="mcs|ncolour|brdf-function|brdf-struct|clut:N|curve:N",
+    help="A MID and an MVIS (mcs, default); one profile with the angles among its device values "
+    "(ncolour), with four angles before them (brdf-function), or with the parameters of a "
+    "registered model for a renderer (brdf-struct). And a calculator program (default), a lookup "
+    "table of N points a channel, or a calculator with curves of N points; the last two need every "
+    "variable fixed with --set. Both: ncolour,clut:17.",
+)
+@click.option(
+    "--angles",
+    metavar="radians|degrees|unit",
+    help="How angles among the device values are given; unit: 0..1 for their range, zeniths 0..1 "
+    "for 0..90 and azimuths for 0..360 degrees. Default: radians for ncolour, unit for "
+    "brdf-function.",
+)
+@click.option(
+    "--parameters",
+    metavar="channel|parameter",
+    help="How a structure's parameters go: all of one channel, then of the next, or the reverse. "
+    "Default: channel.",
 )
 @click.option(
     "--spectral",
@@ -63,6 +81,8 @@ def command(
     channels: tuple[str, ...],
     asm: str | None,
     encode: str,
+    angles: str | None,
+    parameters: str | None,
     spectral: str | None,
     highlight: str | None,
     geometry: str | None,
@@ -86,6 +106,7 @@ def command(
       brdfc compile ward -o curved_mvis.icc --channel incident --channel reflection
       brdfc compile ward -o exact_mvis.icc --optimize accuracy --explain
       brdfc compile ward -o lamp_mvis.icc --white 0.97,1,0.484
+      brdfc compile ward -o angles.icc --encode ncolour
       brdfc compile ward -o spectral_mvis.icc --spectral 400nm..700nm,10nm --illuminant A
     """
     from brdfc.calc.price import operations
@@ -93,6 +114,8 @@ def command(
     from brdfc.files import write_whole
     from brdfc.lang.load import load
 
+    if geometry is None and "brdf-function" in encode:
+        geometry = "full"  # which is what it takes
     conditions = stated_viewing(**viewing)
     compiled = compile_model(
         load(model, geometry, spectral),
@@ -104,11 +127,13 @@ def command(
         encode=encode,
         conditions=conditions,
         highlight=highlight,
+        angles=angles,
+        parameters=parameters,
         cache=not no_cache,
         progress=shown_progress,
     )
     end_progress()
-    mid_path, mvis_path = compiled.save(output, mid)
+    paths = compiled.save(output, mid)
     if asm:
         write_whole(asm, compiled.text.encode())
     verdict, program = compiled.verdict, compiled.program
@@ -131,7 +156,7 @@ def command(
         f"self-check   worst CIEDE2000 {verdict.worst:.1e} at {verdict.points} points of the domain"
         + (f", {verdict.undefined} of them undefined in the model" if verdict.undefined else "")
     )
-    for path in (mid_path, mvis_path, *([asm] if asm else [])):
+    for path in (*paths, *([asm] if asm else [])):
         click.echo(f"wrote        {path}")
 
 

@@ -12,15 +12,17 @@ from brdfc.source.errors import BrdfcError
 
 # One line a command here, so that `brdfc --help` imports none of them.
 _COMMANDS = {
-    "apply": "Evaluate an image of coefficients through a MID and an MVIS.",
+    "angles": "Compute the angles of every pixel from normals, a light and a camera.",
+    "apply": "Evaluate an image of coefficients through profiles.",
     "calibrate": "Measure what calculator operators cost on this machine.",
     "chart": "Chart speed against accuracy for every form of a model.",
     "check": "Verify everything that can be verified about a model or a profile.",
-    "compile": "Compile a reflectance model to a MID and an MVIS profile.",
+    "compile": "Compile a reflectance model to profiles.",
     "disasm": "Print the calculator text of a profile.",
-    "eval": "Evaluate single pixels through a MID and an MVIS.",
+    "eval": "Evaluate single pixels through profiles.",
     "export": "Write a model's formula for other tools, as FPCore.",
     "models": "List the model library, or show one model.",
+    "plot": "Draw curves, lobes, strips of colours, lit bodies.",
     "stability": "Show where a model fails in float32, and by how much.",
 }
 

@@ -21,6 +21,7 @@ from brdfc.calc.verify import verify
 from brdfc.engine.interpreter import run
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import NumberArray, Pipeline, Utf8Array
+from brdfc.profiles.brdf_function import ANGLES
 from brdfc.profiles.metadata import Described, describe, value_text
 from brdfc.source.diagnostics import did_you_mean
 from brdfc.source.errors import LinkError, ProgramError, ValueGivenError
@@ -148,10 +149,46 @@ def _single(profile: Profile, env: Mapping[str, float], transform: str | None) -
     only = pipeline(profile, found)
     described = describe(profile, "channel")
     names = tuple(name for d in described for name in d.component_names)
+    if found.startswith("b") and len(names) + len(ANGLES) == only.inputs:
+        # Angles come first, and the profile describes the rest.
+        names, described = (*ANGLES, *names), ()
     if len(names) != only.inputs:
         names, described = tuple(map(str, range(only.inputs))), ()
     environment = _environment(profile, found, env)
     return Link(names, (only,), profile, found, (), environment, described)
+
+
+def connect_alone(profile: Profile, env: Mapping[str, float] | None = None) -> Link:
+    """A profile without another: of device values, or an MVIS whose channels are given directly,
+    as no colour engine takes them. Raises as connect does."""
+    if profile.header.device_class != "mvis":
+        return _single(profile, env or {}, None)
+    only, names = pipeline(profile, "M2B0"), _names(profile)
+    if len(names) != only.inputs:
+        raise LinkError("the channel names ('mcta') do not match the transform's channels")
+    environment = _environment(profile, "M2B0", env or {})
+    described = describe(profile, "channel")
+    return Link(names, (only,), profile, "M2B0", (), environment, described)
+
+
+def channel_defaults(link: Link) -> tuple[float, ...]:
+    """A value for every channel of a link that was made alone: the profile's, or 0."""
+    stated = link.profile.tags.get("mdv ")
+    if isinstance(stated, NumberArray) and len(stated.values) == len(link.channels):
+        return stated.values
+    known = {
+        name: value
+        for d in link.described
+        for name, value in zip(d.component_names, d.default, strict=True)
+    }
+    return tuple(known.get(name, 0.0) for name in link.channels)
+
+
+def variable_names(link: Link) -> dict[str, str]:
+    """The signature of every variable a link's transform reads, by the model's name for it, or by
+    the signature where the profile does not say."""
+    known = transform_variables(link.profile, link.transform)
+    return {(d.name if d else s): s for s, d in known}
 
 
 def device_transform(profile: Profile) -> str:
@@ -246,7 +283,7 @@ def pipeline(profile: Profile, signature: str) -> Pipeline:
     tag = profile.tags.get(signature)
     if not isinstance(tag, Pipeline):
         spectral = "compile the model with --spectral 400nm..700nm,10nm"
-        hint = spectral if signature.startswith("M2S") else None
+        hint = spectral if signature.startswith(("M2S", "D2B")) else None
         raise LinkError(f"the profile has no '{signature}' transform", hint=hint)
     channels = tag.inputs
     for element in tag.elements:

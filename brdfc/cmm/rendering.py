@@ -28,6 +28,7 @@ from brdfc.colour.picture import srgb
 from brdfc.colour.spectrum import Grid
 from brdfc.icc.header import D50 as HEADER_D50
 from brdfc.icc.profile import Profile
+from brdfc.icc.signatures import NO_SPACE
 from brdfc.icc.types import Pipeline
 from brdfc.profiles.conditions import stated_conditions
 from brdfc.source.diagnostics import did_you_mean
@@ -94,18 +95,17 @@ class Rendering:
         values = self.link.apply(pixels)
         if self.to is Target.SPECTRUM:
             return values, 0
-        if self.observer is None and self.to_standard is None and self.adaptation is None:
-            exact = values.astype(np.float64)
-        else:
-            exact = self._colours(values)
+        exact = self.colours(values)
         if self.to is Target.SRGB:
-            return srgb(exact)
+            picture, outside = srgb(exact)
+            return picture, int(outside.sum())
         if self.to is Target.LAB:
             exact = lab(exact, self.white)
         return exact.astype(np.float32), 0
 
-    def _colours(self, values: NDArray[np.float32]) -> Array:
-        exact: Array = values.astype(np.float64)
+    def colours(self, values: ArrayLike) -> Array:
+        """XYZ (..., 3) in float64, adapted, of values of the link (..., outputs)."""
+        exact: Array = np.asarray(values, dtype=np.float64)
         if self.observer is not None:
             exact = exact @ self.observer.T
         if self.to_standard is not None:
@@ -133,7 +133,7 @@ def rendering(
     what makes no sense of this profile.
     """
     to = target(to) if isinstance(to, str) else to
-    spectral = link.transform.startswith("M2S")
+    spectral = leads_to_reflectances(link)
     if to is Target.SPECTRUM:
         if not spectral:
             raise LinkError("the profile has no reflectances to give", hint=_SPECTRAL)
@@ -155,6 +155,14 @@ def rendering(
 _SPECTRAL = "compile the model with --spectral 400nm..700nm,10nm"
 
 
+def leads_to_reflectances(link: Link) -> bool:
+    """Whether the values of a link are reflectances, not X, Y, Z."""
+    kind = link.transform[:3]
+    return kind in ("M2S", "bDB") or (
+        kind == "D2B" and link.profile.header.spectral_pcs != NO_SPACE
+    )
+
+
 def profile_white(profile: Profile) -> XYZ:
     """The white of a profile's XYZ: of its viewing conditions, or of its header."""
     stated = stated_conditions(profile)
@@ -174,6 +182,19 @@ def spectral_grid(profile: Profile) -> Grid:
     if profile.header.spectral_pcs[:2] != b"rs" or found.steps < 2 or found.start >= found.end:
         raise LinkError("the profile's spectral connection space is not one of reflectances")
     return Grid(found.start, found.end, found.steps)
+
+
+def adapted_xyz(xyz: ArrayLike, white: XYZ, adapt: str | None) -> tuple[Array, XYZ]:
+    """XYZ (..., 3) under a white as it is under another, and that white.
+
+    adapt: as for rendering; by way of D50, linear Bradford.
+    """
+    exact = np.asarray(xyz, dtype=np.float64)
+    if adapt is None:
+        return exact, white
+    _, wanted = _white(adapt)
+    both = adaptation_matrix(D50, wanted) @ adaptation_matrix(white, D50)
+    return exact @ both.T, wanted
 
 
 def _of_reflectances(link: Link, to: Target, conditions: ViewingConditions | None) -> Rendering:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,18 +20,25 @@ WRITING = (
 )
 
 Band = NDArray[np.float32]
+_KIND_NAMES: dict[type, str] = {
+    np.float32: "32-bit floats",
+    np.uint8: "8-bit",
+    np.uint16: "16-bit integers",
+}
 BAND_PIXELS = 1 << 18
 """Pixels a band holds: a few megabytes, whatever the size of the image."""
 
 
 @dataclass(frozen=True)
 class CoefficientImage:
-    """An open image: samples are (height, width, channels), read from the file as they are used."""
+    """An open image: samples are (height, width, channels), read from the file as they are used.
+    greatest: of integer samples, the greatest they can be; 0 for floats."""
 
     height: int
     width: int
     channels: int
     samples: Any
+    greatest: int = 0
 
     @property
     def rows_per_band(self) -> int:
@@ -40,14 +47,24 @@ class CoefficientImage:
     def bands(self) -> Iterator[Band]:
         """The image from top to bottom, (rows, width, channels) float32 each."""
         for top in range(0, self.height, self.rows_per_band):
-            yield np.ascontiguousarray(
-                self.samples[top : top + self.rows_per_band], dtype=np.float32
-            )
+            yield self.rows(slice(top, top + self.rows_per_band))
+
+    def rows(self, part: slice) -> Band:
+        """Some rows, (rows, width, channels) float32."""
+        return np.ascontiguousarray(self.samples[part], dtype=np.float32)
 
 
 @contextmanager
 def open_coefficients(path: str | Path) -> Iterator[CoefficientImage]:
     """Open a float32 TIFF, chunky or planar; ImageError for anything else."""
+    with open_samples(path, (np.float32,)) as image:
+        yield image
+
+
+@contextmanager
+def open_samples(path: str | Path, kinds: Sequence[type]) -> Iterator[CoefficientImage]:
+    """Open a TIFF, chunky or planar, whose samples are of one of these kinds; ImageError for
+    anything else."""
     import tifffile
 
     try:
@@ -57,10 +74,10 @@ def open_coefficients(path: str | Path) -> Iterator[CoefficientImage]:
     except Exception as error:  # a hostile file can make the library raise anything
         raise ImageError(f"not a TIFF image: {error}", where=str(path)) from error
     with tiff:
-        yield _image(tiff, str(path))
+        yield _image(tiff, str(path), kinds)
 
 
-def _image(tiff: Any, where: str) -> CoefficientImage:
+def _image(tiff: Any, where: str, kinds: Sequence[type]) -> CoefficientImage:
     try:
         pages = len(tiff.pages)
         page = tiff.pages[0]
@@ -73,9 +90,10 @@ def _image(tiff: Any, where: str) -> CoefficientImage:
             where=where,
             hint=WRITING,
         )
-    if kind != np.float32:
+    if kind not in kinds:
+        wanted = " or ".join(_KIND_NAMES[k] for k in kinds)
         raise ImageError(
-            f"its samples are {kind}; coefficients are 32-bit floats",
+            f"its samples are {kind}; {wanted} are needed",
             where=where,
             hint="convert it with the scaling that its samples have: brdfc does not guess one",
         )
@@ -90,14 +108,15 @@ def _image(tiff: Any, where: str) -> CoefficientImage:
     elif axes == "YX":
         samples = samples[..., None]
     height, width, channels = samples.shape
-    return CoefficientImage(height, width, channels, samples)
+    greatest = 0 if kind.kind == "f" else int(np.iinfo(kind).max)
+    return CoefficientImage(height, width, channels, samples, greatest)
 
 
 def _mapped(tiff: Any, page: Any) -> Any:
     """The samples of an uncompressed image where they lie in the file."""
     return np.memmap(
         tiff.filehandle.path,
-        dtype=tiff.byteorder + "f4",
+        dtype=page.dtype.newbyteorder(tiff.byteorder),
         mode="r",
         offset=page.dataoffsets[0],
         shape=page.shape,

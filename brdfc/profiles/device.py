@@ -3,7 +3,7 @@ profile has colours: the transform `A2B1`, and with wavelengths `D2B1`."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from brdfc.calc.program import Element
 from brdfc.icc.profile import Profile
@@ -14,7 +14,7 @@ from brdfc.profiles.content import Content
 
 
 def device_profile(
-    content: Content, samples: Sequence[Sample], count: int, more: dict[str, Tag] | None = None
+    content: Content, samples: Sequence[Sample], count: int, more: Mapping[str, Tag] | None = None
 ) -> Profile:
     """A profile for images of so many samples.
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from xml.sax.saxutils import escape
 
 from brdfc.icc.profile import Profile
@@ -92,7 +92,8 @@ def _quantity_entries(key: str, q: Quantity) -> list[tuple[str, str]]:
         (f"{key}.default", value_text(q.default, q.type)),
         (f"{key}.description", q.description),
     ]
-    return entries + ([(f"{key}.signature", q.signature)] if q.signature else [])
+    named = q.signature and key.startswith("env")
+    return entries + ([(f"{key}.signature", q.signature)] if named else [])
 
 
 def _split(name: str, text: str) -> list[tuple[str, str]]:
@@ -115,12 +116,24 @@ def describe(profile: Profile, role: str) -> tuple[Described, ...]:
         return ()
     found = []
     index = 1
+    unit = meta.get("angles") if role == "channel" else None
     while (name := meta.get(f"{role}.{index}")) is not None:
         described = _described(meta, f"{role}.{index}", name)
         if described is not None:
-            found.append(described)
+            found.append(_as_sample(described, unit))
         index += 1
     return tuple(found)
+
+
+def _as_sample(described: Described, unit: str | None) -> Described:
+    """A channel as the image has it: an angle may be one in degrees, or 0..1 for its range."""
+    if not described.type.is_angle or unit not in ("degrees", "unit"):
+        return described
+    low, high = described.low, described.high
+    ends = (0.0, 1.0) if unit == "unit" else (math.degrees(low), math.degrees(high))
+    default = (described.default[0] - low) / (high - low)
+    scaled = (ends[0] + default * (ends[1] - ends[0]),)
+    return replace(described, type=TYPES["number"], low=ends[0], high=ends[1], default=scaled)
 
 
 def _described(meta: Dictionary, key: str, name: str) -> Described | None:

@@ -100,7 +100,7 @@ def test_samples_outside_the_declared_range_are_counted(
     ("change", "message"),
     [
         (lambda image: image[..., :4], "4 samples a pixel, the profile takes 5: Rdx, Rdy, Rdz"),
-        (lambda image: image.astype(np.uint16), "samples are uint16; coefficients are 32-bit"),
+        (lambda image: image.astype(np.uint16), "samples are uint16; 32-bit floats"),
         (lambda image: image.astype(np.float16), "samples are float16"),
         (lambda image: image.astype(np.float64), "samples are float64"),
     ],

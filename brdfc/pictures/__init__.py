@@ -1,0 +1,1 @@
+"""From models, profiles and measured points to what pictures show."""
