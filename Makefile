@@ -19,6 +19,7 @@ lint: .venv/installed
 
 figures: .venv/installed
 	$(BIN)/python benchmarks/figures.py
+	$(BIN)/python benchmarks/viewing.py
 	$(BIN)/python benchmarks/forms.py
 	$(BIN)/python benchmarks/library.py
 	$(BIN)/python benchmarks/stability.py
@@ -32,4 +33,4 @@ golden: .venv/installed
 	touch $@
 
 clean:
-	rm -rf .venv demo
+	rm -rf .venv demo paper cylinder spectral

@@ -21,7 +21,7 @@ import numpy as np
 
 import brdfc
 from brdfc.cmm import reference
-from brdfc.colour.difference import ciede2000
+from brdfc.colour.difference import D50, ciede2000
 from brdfc.lang.load import library
 from brdfc.lang.model import Quantity
 
@@ -42,9 +42,9 @@ def eq_1(name: str, pixels: np.ndarray, incident: float, reflection: float) -> n
     ti, tr = math.radians(incident), math.radians(reflection)
     lobe = np.exp(-(np.tan((ti - tr) / 2) ** 2) / m**2) / (4 * np.pi * m**2)
     specular = ks / np.sqrt(np.cos(ti) * np.cos(tr)) * lobe
-    if name == "ward_printed":
+    if name == "ward_printed":  # as printed: the highlight adds the same to X, Y and Z
         return np.cos(ti) * rd / np.pi + specular
-    return np.cos(ti) * (rd / np.pi + specular)
+    return np.cos(ti) * (rd / np.pi + specular * np.array(D50))
 
 
 def accuracy(folder: Path) -> None:

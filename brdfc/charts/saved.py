@@ -19,7 +19,7 @@ PURPLE, ORANGE, SKY, GREY = "#CC79A7", "#E69F00", "#56B4E9", "#8a8a8a"
 SERIES = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 """The colours of curves, in turn; the eighth begins anew, with another dash."""
 DASHES = ("-", "--", ":", "-.")
-SHAPES = "o^vPXsD"
+SHAPES = "o^vsDPX"
 """Shapes of marks, which differ where colours may not be seen to."""
 
 _NO_DATE = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,6 +23,8 @@ with warnings.catch_warnings():
 
 LAMP = (0.97, 1.0, 0.484)
 PIXELS = np.random.default_rng(4).uniform(0.05, 0.4, (40, 5)).astype(np.float32)
+CORNELL = Path(__file__).resolve().parents[3] / "shared" / "data" / "cornell"
+"""Beside the checkout; nothing of it is in the project."""
 RUN = {"incident": 0.7, "reflection": 0.4}
 
 
@@ -155,6 +158,45 @@ def test_metamers_part_under_another_light(spectral: brdfc.Compiled) -> None:
     other = brdfc.rendering(link(spectral, "M2S0"), "Lab", conditions=viewing_conditions("D65"))
     assert np.abs(same[0] - same[1]).max() < 1e-3
     assert np.abs(np.subtract(*other.apply(pixels))).max() > 1
+
+
+@pytest.mark.skipif(not CORNELL.is_dir(), reason="the measured paints are not beside the checkout")
+@pytest.mark.parametrize("paint", ["garnet_red", "mystique", "acryl_blue"])
+def test_measured_reflectances_go_through(paint: str, spectral: brdfc.Compiled) -> None:
+    """The colours that colour-science integrates from the measurement, under lights and for an
+    observer that the profile does not know."""
+    words = [
+        word
+        for line in (CORNELL / f"{paint}.brdf").read_text().splitlines()
+        for word in line.partition("#")[0].split()
+    ]
+    numbers = np.array(words[1 : 1 + 31 + 1439 * 35], np.float64)
+    assert (int(words[0]), len(words), numbers[30]) == (31, 1 + len(numbers), 700)
+    records = numbers[31:].reshape(-1, 35)
+    factors = np.pi * np.cos(records[:, :1]) * records[:, 4:]
+    factors = factors[(factors <= 1).all(axis=1)]  # the diffuse body, and not the highlight
+    assert len(factors) > 1000
+    ends = np.tile([0.0, 0.1], (len(factors), 1))
+    pixels = np.hstack([factors, ends]).astype(np.float32)
+    from_above = {"incident": 0.0, "reflection": 0.3}  # where the radiance is Rd / pi
+    found = brdfc.connect(spectral.mid, spectral.mvis, env=from_above, transform="M2S0")
+    back = np.pi * brdfc.rendering(found, "spectrum").apply(pixels)
+    np.testing.assert_allclose(back, pixels[:, :31], rtol=3e-7, atol=1e-9)
+
+    # as the ICC's engine reads spectra: linear between the samples, and constant beyond their ends
+    for light in ("D65", "FL11"):
+        conditions = viewing_conditions(light, "1964-10")
+        nm = conditions.grid.wavelengths
+        shape = colour.SpectralShape(nm[0], nm[-1], nm[1] - nm[0])
+        spread = [np.interp(nm, spectral_grid(spectral.mvis).wavelengths, row) for row in factors]
+        theirs = colour.msds_to_XYZ(
+            colour.MultiSpectralDistributions(np.transpose(spread), nm),
+            colour.MSDS_CMFS["CIE 1964 10 Degree Standard Observer"].copy().align(shape),
+            colour.SDS_ILLUMINANTS[light].copy().align(shape),
+            method="Integration",
+        )
+        ours = np.pi * brdfc.rendering(found, conditions=conditions).apply(pixels)
+        assert ciede2000(ours, theirs / 100, conditions.white).max() < 0.01
 
 
 # ---------------------------------------------------------------- what cannot be

@@ -184,7 +184,7 @@ def test_end_to_end_to_d50_through_the_reference_engine(name: str, tmp_path: Pat
         highlight = lobe if name == "ward_printed" else ci * lobe * LAMP
         differences.append(ciede2000(xyz, (ci * rd / np.pi + highlight) @ to_d50.T))
     # Of a program without any error the engine's own float32 makes 2.7e-6 and 3.3e-5: it puts its
-    # scale of XYZ into the matrix of `c2sp`, rounded (python benchmarks/colour.py shows it).
+    # scale of XYZ into the matrix of `c2sp`, rounded (python benchmarks/viewing.py shows it).
     assert np.median(differences) <= 3.5e-6
     assert np.max(differences) <= 4e-5
 
