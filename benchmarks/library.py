@@ -19,7 +19,7 @@ import numpy as np
 
 import brdfc
 from brdfc.cmm import reference
-from brdfc.colour.difference import ciede2000
+from brdfc.colour.colorimetry import XYZ_UNDER_D50
 from brdfc.compiler import Compiled, compile_model, problem_of
 from brdfc.judge.rival import subject
 from brdfc.judge.stability import count_failures
@@ -49,7 +49,7 @@ def differences(compiled: Compiled, folder: Path) -> tuple[str, np.ndarray]:
         fixed = {name: values[i : i + 1].astype(np.float64) for name, values in runs.items()}
         values = {**{n: v.astype(np.float64) for n, v in drawn.items()}, **fixed}
         exact = evaluate(compiled.formula.exact, values) + np.zeros((PIXELS, 1))
-        found.append(ciede2000(theirs, exact))
+        found.append(XYZ_UNDER_D50.difference(theirs, exact))
     return "; ".join(sorted(verdicts)), np.concatenate(found)
 
 
