@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from brdfc.colour.colorimetry import Colorimetry
-from brdfc.colour.conditions import ViewingConditions, viewing_conditions
+from brdfc.colour.conditions import SEEN, ViewingConditions, viewing_conditions
 from brdfc.colour.difference import D50
 from brdfc.colour.spectrum import Grid
 from brdfc.lang.model import HIGHLIGHTS, Model
@@ -55,6 +55,12 @@ def spectral_grid(model: Model) -> Grid | None:
     if not grids:
         return None
     (first, last, step) = next(iter(grids))
+    low, high = SEEN
+    if first > low or last < high:
+        raise ValueGivenError(
+            f"the spectra of '{grids[first, last, step]}' cover {first}..{last} nm; colours need "
+            f"{low:g}..{high:g} nm"
+        )
     return Grid(float(first), float(last), (last - first) // step + 1)
 
 
@@ -72,11 +78,15 @@ def colours_of(
 
     Spectra have no colour without a light: D50 and the 1931 observer where none is given.
     """
+    grid = spectral_grid(model)
+    if grid is not None and highlight is not None:
+        raise ValueGivenError(
+            "reflectances of a highlight are what the model says; only X, Y, Z have a choice"
+        )
     highlight = model.highlight if highlight is None else highlight
     if highlight not in HIGHLIGHTS:
         hint = did_you_mean(highlight, HIGHLIGHTS) or "light or equal"
         raise ValueGivenError(f"'{highlight}' is no colour of highlights", hint=hint)
-    grid = spectral_grid(model)
     if grid is None:
         white = conditions.white if conditions is not None else D50
         return Colours(conditions, None, highlight, Colorimetry(white))

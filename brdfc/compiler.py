@@ -15,6 +15,7 @@ from brdfc.colour.colorimetry import XYZ_UNDER_D50, Colorimetry
 from brdfc.colour.conditions import ViewingConditions
 from brdfc.colours import bands, colours_of
 from brdfc.encodings import Encoding, encoded, encoding
+from brdfc.files import write_all
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import Dictionary
 from brdfc.judge.cache import Remembered, holds, key, note, recall, remember, steps_text, summary
@@ -77,15 +78,19 @@ class Compiled:
         """The calculator text of the program."""
         return disassemble(self.program.body)
 
-    def save(self, path: str | Path, mid: str | Path | None = None) -> tuple[Path, ...]:
-        """Write the profiles; the MID beside the MVIS unless said where (see ProfilePair.save).
-        Returns their paths, the MID's first."""
+    def files(self, path: str | Path, mid: str | Path | None = None) -> list[tuple[Path, bytes]]:
+        """Path and bytes of each profile, the MID first; beside the MVIS unless said where."""
         if len(self.profiles) == 2:
-            return ProfilePair(self.mid, self.mvis).save(path, mid)
+            return ProfilePair(self.mid, self.mvis).files(path, mid)
         if mid is not None:
             raise ValueGivenError(f"'{self.layout.name}' has one profile and no MID")
-        self.mvis.save(path)
-        return (Path(path),)
+        return [(Path(path), self.mvis.to_bytes())]
+
+    def save(self, path: str | Path, mid: str | Path | None = None) -> tuple[Path, ...]:
+        """Write the profiles, all or none; see files. Returns their paths."""
+        files = self.files(path, mid)
+        write_all(*files)
+        return tuple(place for place, _ in files)
 
 
 def compile_model(
@@ -125,7 +130,8 @@ def compile_model(
     aim, how = goal(optimize, max_error), encoding(encode)
     arrangement = layout(how.layout, model, angles, parameters)
     fixed = set or {}
-    pixel = (*channels, *(n for n in pixel_quantities(arrangement, model) if n not in fixed))
+    named = {q.name for name in fixed if (q := model.quantity(name)) is not None}
+    pixel = (*channels, *(n for n in pixel_quantities(arrangement, model) if n not in named))
     colours = colours_of(model, conditions, highlight)
     roles, ready = prepare(model, fixed, pixel, cache, colours.formula_white)
     problem = problem_of(roles, ready, colours.colorimetry)

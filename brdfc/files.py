@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from brdfc.source.errors import BrdfcError
@@ -42,6 +42,34 @@ def write_whole(path: str | Path, data: bytes) -> None:
     """Write bytes to a path, whole or not at all."""
     with whole_file(path) as temporary:
         temporary.write_bytes(data)
+
+
+def write_all(*files: tuple[str | Path, bytes]) -> None:
+    """Write several files, all of them whole or none; BrdfcError where two are one."""
+    refuse_same([path for path, _ in files])
+    with ExitStack() as stack:
+        for path, data in files:
+            stack.enter_context(whole_file(path)).write_bytes(data)
+
+
+def refuse_same(
+    written: Sequence[str | Path | None], read: Sequence[str | Path | None] = ()
+) -> None:
+    """Raise BrdfcError where two of the files to be written are one, or one would replace a file
+    that is read. None stands for a file that is not asked for."""
+    targets = [Path(path) for path in written if path is not None]
+    for i, target in enumerate(targets):
+        if any(_one(target, other) for other in targets[:i]):
+            raise BrdfcError("two outputs would be written here", where=str(target))
+        if any(_one(target, Path(path)) for path in read if path is not None):
+            raise BrdfcError("the output would replace an input", where=str(target))
+
+
+def _one(a: Path, b: Path) -> bool:
+    """Whether two paths lead to one file."""
+    if a.exists() and b.exists():
+        return a.samefile(b)
+    return a.absolute() == b.absolute()
 
 
 def read_file(path: str | Path, limit: int | None = None) -> bytes:

@@ -8,7 +8,7 @@ brdf-struct    one profile with the model's name and parameters for a renderer (
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from brdfc.colours import Colours
@@ -67,7 +67,7 @@ def layout(
             hint="compile it with --geometry full",
         )
     if name == "brdf-struct":
-        registered(model.name)
+        registered(model)
         return Layout(name, parameters=parameter_order(parameters or "channel"))
     usual = USUAL_ANGLES.get(name)
     return Layout(name, angle_unit(angles or usual) if usual else "")
@@ -95,15 +95,16 @@ def profiles(
         pair = profile_pair(content)
         return pair.mid, pair.mvis
     if how.name == "ncolour":
-        samples = [s for q in roles.channels for s in _samples(q, roles, how.angles)]
+        samples = _samples(roles.channels, how.angles)
         return (device_profile(content, samples, len(samples)),)
     if how.name == "brdf-function":
         places = _places(roles)
         angles = {name: places[name].start for name in ANGLES if name in places}
         still = {q.name: q.default[0] for q in roles.channels if q.name in angles}
-        return (brdf_function_profile(content, angles, still, how.angles),)
+        read = _samples(device_quantities(how, roles), how.angles)
+        return (brdf_function_profile(content, angles, still, how.angles, read),)
     count = len(roles.channel_names)
-    more = _structures(registered(model.name), how, roles, content, colours)
+    more = _structures(registered(model), how, roles, content, colours)
     return (device_profile(content, [plain(i) for i in range(count)], count, more),)
 
 
@@ -116,11 +117,15 @@ def _places(roles: Roles) -> dict[str, Parameter]:
     return found
 
 
-def _samples(q: Quantity, roles: Roles, unit: str) -> list[Sample]:
-    start = _places(roles)[q.name].start
-    if q.type.is_angle:
-        return [ranged(start, q.low, q.high, unit)]
-    return [plain(start + i) for i in range(q.type.value.width)]
+def _samples(quantities: Sequence[Quantity], unit: str) -> list[Sample]:
+    """How quantities come from an image that has their components in this order."""
+    found: list[Sample] = []
+    for q in quantities:
+        if q.type.is_angle:
+            found.append(ranged(len(found), q.low, q.high, unit))
+        else:
+            found += [plain(len(found) + i) for i in range(q.type.value.width)]
+    return found
 
 
 def _structures(

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from brdfc.charts.saved import saved
+from brdfc.charts.saved import PIXELS, saved
 
 Picture = NDArray[np.uint8]
 Mask = NDArray[np.bool_]
@@ -73,7 +73,7 @@ def rendered_bodies(bodies: Sequence[Body], title: str, note: str, kind: str) ->
     def draw() -> Figure:
         across = min(len(bodies), 4)
         down = -(-len(bodies) // across)
-        side = 3.0
+        side = max(b.picture.shape[0] for b in bodies) / PIXELS  # a pixel for a pixel
         width = max(across * (side + 0.15) + 0.3, 5.0)
         figure, tall, top = _sheet(width, down * (side + 0.35) + 0.1, title, note)
         for i, body in enumerate(bodies):

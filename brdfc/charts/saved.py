@@ -22,6 +22,8 @@ DASHES = ("-", "--", ":", "-.")
 SHAPES = "o^vsDPX"
 """Shapes of marks, which differ where colours may not be seen to."""
 
+PIXELS = 160
+"""An inch, in PNG."""
 _NO_DATE = {
     "svg": {"Date": None, "Creator": None, "Format": None, "Type": None},
     "png": {"Software": None},
@@ -43,5 +45,5 @@ def saved(
         matplotlib.rc("svg", hashsalt="brdfc", fonttype="path")
         matplotlib.rc("axes.spines", top=frame, right=frame)
         picture = io.BytesIO()
-        draw().savefig(picture, format=kind, dpi=160, metadata=_NO_DATE[kind])
+        draw().savefig(picture, format=kind, dpi=PIXELS, metadata=_NO_DATE[kind])
         return picture.getvalue()

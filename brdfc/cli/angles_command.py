@@ -61,9 +61,8 @@ def command(
 
     if not (math.isfinite(width) and width > 0):
         raise click.UsageError(f"--width takes a number above 0, not {width:g}")
-    scene = Arrangement(
-        _vector(light, "--light"), _vector(camera, "--camera"), geometry, distant, width
-    )
+    light_at = _vector(light, "--light", distant)
+    scene = Arrangement(light_at, _vector(camera, "--camera", distant), geometry, distant, width)
     shown = 0
 
     def progress(done: int, total: int) -> None:
@@ -76,6 +75,12 @@ def command(
     for count, what in ((faced.from_light, "light"), (faced.from_camera, "camera")):
         if count:
             click.echo(f"note: {count:,} pixels face away from the {what}: 90 degrees", err=True)
+    if faced.touched:
+        click.echo(
+            f"note: the light or the camera is at {faced.touched:,} pixels of the surface: no "
+            "direction leads there",
+            err=True,
+        )
     if faced.leaves_plane > math.radians(0.1):
         away = math.degrees(faced.leaves_plane)
         click.echo(
@@ -88,11 +93,13 @@ def command(
     click.echo(f"wrote        {output}")
 
 
-def _vector(text: str, option: str) -> tuple[float, float, float]:
+def _vector(text: str, option: str, direction: bool) -> tuple[float, float, float]:
     try:
         x, y, z = (float(word) for word in text.split(","))
     except ValueError:
         raise click.UsageError(f"{option} takes X,Y,Z, three numbers, not '{text}'") from None
-    if not all(map(math.isfinite, (x, y, z))) or x == y == z == 0:
-        raise click.UsageError(f"{option} takes finite numbers that are not all 0, not '{text}'")
+    if not all(map(math.isfinite, (x, y, z))):
+        raise click.UsageError(f"{option} takes finite numbers, not '{text}'")
+    if direction and x == y == z == 0:
+        raise click.UsageError(f"{option} is a direction, and 0,0,0 is none")
     return x, y, z

@@ -28,11 +28,13 @@ def command(files: tuple[str, ...], output: str, environment: tuple[str, ...], *
       brdfc apply ward_mid.icc ward_mvis.icc coefficients.tif -o picture.tif --to sRGB
       brdfc apply ward_mid.icc ward_mvis.icc coefficients.tif -o under_a.tif --adapt A
     """
+    from brdfc.files import refuse_same
     from brdfc.images.apply import apply_to_tiff
 
     *profiles, image = files
     if not profiles:
         raise click.UsageError("give the profiles first, then the image")
+    refuse_same([output], files)
     chosen = rendered(profiles, environment, **how)
     warn_of_defaults(chosen.link)
     shown = 0

@@ -24,8 +24,8 @@ def _applied(function: Callable[..., Any], *options: Callable[..., Any]) -> Call
     return function
 
 
-def viewing_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """The light, the observer and the surround that a profile is for; see stated_viewing."""
+def light_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The light that colours are under, and who sees them."""
     return _applied(
         function,
         click.option(
@@ -46,6 +46,23 @@ def viewing_options(function: Callable[..., Any]) -> Callable[..., Any]:
             help="Who sees them: a standard observer, or a file of wavelengths and x, y, z. "
             "Default: 1931-2.",
         ),
+    )
+
+
+def adaptation_option(function: Callable[..., Any]) -> Callable[..., Any]:
+    """How colours are adapted on the way to another white."""
+    return click.option(
+        "--adaptation",
+        metavar=_TRANSFORM,
+        help="How colours are adapted after D50. Default: bradford, linear.",
+    )(function)
+
+
+def viewing_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The light, the observer and the surround that a profile is for; see stated_viewing."""
+    return _applied(
+        function,
+        light_options,
         click.option(
             "--surround",
             metavar="average|dim|dark|X,Y,Z",
@@ -120,12 +137,7 @@ def rendering_options(function: Callable[..., Any]) -> Callable[..., Any]:
             metavar=_OBSERVER,
             help="Who sees them. Default: the profile's observer.",
         ),
-        click.option(
-            "--adaptation",
-            default="bradford",
-            metavar=_TRANSFORM,
-            help="How colours are adapted after D50. Default: bradford, linear.",
-        ),
+        adaptation_option,
         click.option(
             "--transform",
             metavar="TAG",
@@ -142,15 +154,18 @@ def rendered(
     adapt: str | None,
     illuminant: str | None,
     observer: str | None,
-    adaptation: str,
+    adaptation: str | None,
     transform: str | None,
 ) -> Rendering:
     """Profiles linked, and rendered as the rendering options say."""
-    from brdfc.cmm.rendering import Target, rendering, target
+    from brdfc.cmm.rendering import Target, rendering, seen_conditions, target
 
     wanted = target(to)  # what cannot be is refused before a profile is read
-    conditions = stated_viewing(illuminant, None, observer, None, None, None)
-    if transform is None and (conditions or wanted is Target.SPECTRUM):
+    if adaptation is not None and adapt is None and wanted is not Target.SRGB:
+        raise click.UsageError("--adaptation says how colours are adapted: give --adapt too")
+    seen = illuminant is not None or observer is not None
+    if transform is None and (seen or wanted is Target.SPECTRUM):
         transform = "M2S0" if len(profiles) > 1 else "D2B1"
     link = connected(profiles, environment, transform)
-    return rendering(link, wanted, adapt, conditions, adaptation)
+    conditions = seen_conditions(link, illuminant, observer) if seen else None
+    return rendering(link, wanted, adapt, conditions, adaptation or "bradford")

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -111,7 +112,7 @@ def command(
     """
     from brdfc.calc.price import operations
     from brdfc.compiler import compile_model
-    from brdfc.files import write_whole
+    from brdfc.files import refuse_same, write_all
     from brdfc.lang.load import load
 
     if geometry is None and "brdf-function" in encode:
@@ -133,9 +134,10 @@ def command(
         progress=shown_progress,
     )
     end_progress()
-    paths = compiled.save(output, mid)
-    if asm:
-        write_whole(asm, compiled.text.encode())
+    files = compiled.files(output, mid)
+    files += [(Path(asm), compiled.text.encode())] if asm else []
+    refuse_same([path for path, _ in files], [model])
+    write_all(*files)
     verdict, program = compiled.verdict, compiled.program
     click.echo(f"channels     {_short(' '.join(compiled.roles.channel_names), 200)}")
     names = [f"{q.name} ({q.signature})" for q in compiled.roles.variables]
@@ -156,7 +158,7 @@ def command(
         f"self-check   worst CIEDE2000 {verdict.worst:.1e} at {verdict.points} points of the domain"
         + (f", {verdict.undefined} of them undefined in the model" if verdict.undefined else "")
     )
-    for path in (*paths, *([asm] if asm else [])):
+    for path, _ in files:
         click.echo(f"wrote        {path}")
 
 

@@ -19,7 +19,8 @@ from brdfc.cli.options import environment_option, warn_of_defaults
     multiple=True,
     required=True,
     metavar="V,V,...",
-    help="One pixel, a number a channel, angles in radians. Repeatable.",
+    help="One pixel, a number a channel; angles in radians, or as the profile was compiled with "
+    "--angles. Repeatable.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def command(

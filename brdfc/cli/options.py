@@ -70,7 +70,8 @@ def connected(
 
     transform: the tag of the last to use, see cmm.link.connect.
     """
-    from brdfc.cmm.link import connect, device_transform, transform_variables
+    from brdfc.cmm.link import connect
+    from brdfc.cmm.transforms import device_transform, transform_variables
     from brdfc.icc.profile import Profile
     from brdfc.lang.types import TYPES
     from brdfc.lang.values import parse_value

@@ -4,14 +4,30 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
-from brdfc.cli.colour_options import stated_viewing, viewing_options
+from brdfc.cli.colour_options import adaptation_option, light_options, stated_viewing
 from brdfc.cli.options import geometry_option, pairs
 
 if TYPE_CHECKING:
     from brdfc.pictures.sources import Subject
 
-KINDS = ("curves", "lobes", "strips", "sphere", "cylinder")
+CURVES, BODIES = ("curves", "lobes"), ("sphere", "cylinder")
+KINDS = (*CURVES, "strips", *BODIES)
+_ONLY_FOR = {
+    "reflection": (*CURVES, "strips"),
+    "quantity": CURVES,
+    "adapts": CURVES,
+    "adaptation": CURVES,
+    "measured": CURVES,
+    "scale": CURVES,
+    "reverse": ("curves",),
+    "azimuth": BODIES,
+    "size": BODIES,
+}
+"""The kinds that an option is for, where it is not for all of them."""
+_OF_MODELS = ("illuminant", "white", "observer", "highlight", "geometry")
+"""The options that a profile has decided already."""
 _USUAL_INCIDENTS = {"strips": ("-30deg", "0deg", "45deg", "60deg")}
 _USUAL_REFLECTIONS = {"strips": "-80deg..80deg,5deg"}
 
@@ -65,11 +81,12 @@ _USUAL_REFLECTIONS = {"strips": "-80deg..80deg,5deg"}
     help="Of a body's light: 0deg from the right (default), 90deg from above.",
 )
 @click.option(
-    "--size", type=click.IntRange(16, 4000), default=320, metavar="N", help="Pixels across a body."
+    "--size", type=click.IntRange(16, 1200), default=480, metavar="N", help="Pixels across a body."
 )
 @click.option("--title", default="", help="Above the picture.")
 @click.option("--csv", "table", metavar="FILE", help="Write the numbers behind the picture, too.")
-@viewing_options
+@light_options
+@adaptation_option
 @click.option("--highlight", metavar="light|equal", help="See brdfc compile; of models.")
 @geometry_option
 def command(
@@ -95,26 +112,40 @@ def command(
       brdfc plot strips 'ward with Rd=(0.1,0.15,0.35) as cyan' -o cyan.png
       brdfc plot sphere ward ggx -o balls.png --incident 40deg
     """
+    from brdfc.files import refuse_same
     from brdfc.pictures.draw import picture_kind, scale
     from brdfc.pictures.sources import open_subjects, source
     from brdfc.pictures.sweep import quantity
 
+    profiles = [s.split(" with ")[0].split(" as ")[0] for s in sources]
+    _refuse_idle(kind, all(p.strip().lower().endswith((".icc", ".icm")) for p in profiles))
     picture_kind(output)  # what cannot be drawn is refused before anything is computed
+    refuse_same([output, how["table"]], [*profiles, *how["measured"]])
     scale(how["scale"])
     quantity(how["quantity"])
-    viewing = (
-        how.pop(n)
-        for n in ("illuminant", "white", "observer", "surround", "luminance", "adaptation")
-    )
-    conditions = stated_viewing(*viewing)
+    light = {name: how.pop(name) for name in ("illuminant", "white", "observer")}
+    conditions = stated_viewing(**light, surround=None, luminance=None, adaptation=None)
     given = pairs(fixed, "--set")
-    bodies = kind in ("sphere", "cylinder")
-    if bodies and geometry is None and not all(s.endswith((".icc", ".icm")) for s in sources):
-        geometry = "full"
     found = [source(text, given) for text in sources]
-    subjects = open_subjects(found, geometry, conditions, highlight)
-    (_draw_bodies if bodies else _draw_sweeps)(kind, subjects, output, **how)
+    # A body has directions in space, where its model can take them.
+    usual = "full" if kind in BODIES else None
+    subjects = open_subjects(found, geometry, conditions, highlight, usual)
+    (_draw_bodies if kind in BODIES else _draw_sweeps)(kind, subjects, output, **how)
     click.echo(f"wrote {output}" + (f" and {how['table']}" if how["table"] else ""))
+
+
+def _refuse_idle(kind: str, only_profiles: bool) -> None:
+    """Wrong usage for options that have nothing to say about this picture."""
+    context = click.get_current_context()
+    flags = {p.name: p.opts[-1] for p in context.command.params}
+    for name, flag in flags.items():
+        if context.get_parameter_source(name or "") is not ParameterSource.COMMANDLINE:
+            continue
+        kinds = _ONLY_FOR.get(name or "", KINDS)
+        if kind not in kinds:
+            raise click.UsageError(f"{flag} is for {' and '.join(kinds)}, not for {kind}")
+        if only_profiles and name in _OF_MODELS:
+            raise click.UsageError(f"{flag} is for models; a profile has its own")
 
 
 def _draw_sweeps(
@@ -126,14 +157,14 @@ def _draw_sweeps(
     reflection: str | None,
     quantity: str,
     adapts: tuple[str, ...],
+    adaptation: str | None,
     measured: tuple[str, ...],
     scale: str,
     reverse: bool,
     exposure: float | None,
-    azimuth: str,
-    size: int,
     title: str,
     table: str | None,
+    **_of_bodies: object,
 ) -> None:
     from brdfc.pictures.draw import draw_strips, draw_sweeps, write_sweeps
     from brdfc.pictures.sources import angle_of, angles_of
@@ -143,15 +174,9 @@ def _draw_sweeps(
     strips = kind == "strips"
     lights = [angle_of(text) for text in incidents or _USUAL_INCIDENTS.get(kind, ("45deg",))]
     seen = angles_of(reflection or _USUAL_REFLECTIONS.get(kind, "-80deg..80deg,1deg"))
-    whites = [None if a == "own" else a for a in adapts] or [None]
-    if strips:
-        if adapts:
-            raise click.UsageError("strips are sRGB, which is seen under D65: leave out --adapt")
-        whites = ["D50"]
+    whites = [None if a == "own" else a for a in adapts] or ["D50" if strips else None]
     factor = _exposure(exposure, strips)
-    found = sweeps(subjects, lights, seen, whites, factor)
-    if measured and strips:
-        raise click.UsageError("--measured goes with curves and lobes")
+    found = sweeps(subjects, lights, seen, whites, factor, adaptation or "bradford")
     for path in measured:
         found += measured_sweeps(path, lights, subjects[0].white)
     note = "" if factor == 1 else f"Exposure {factor:.4g}."
@@ -178,7 +203,7 @@ def _draw_bodies(
     size: int,
     title: str,
     table: str | None,
-    **_others: object,
+    **_of_curves: object,
 ) -> None:
     from dataclasses import replace
 
@@ -193,7 +218,7 @@ def _draw_bodies(
         light = light_direction(angle_of(text), turn)
         for subject in subjects:
             one = lit(subject, kind, 2 * size, light, factor)  # drawn at half the size
-            xyz, _ = subject.adapted(one.xyz, "D50")
+            xyz, _ = subject.adapted(one.xyz, "D50", "bradford")
             label = subject.label if len(incidents) < 2 else f"{subject.label}, light at {text}"
             drawn.append((label, replace(one, xyz=xyz)))
     named = title or f"A {kind}, lit from {', '.join(incidents or ('45deg',))}"

@@ -14,23 +14,24 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from brdfc.calc.program import Program
-from brdfc.calc.verify import verify
-from brdfc.engine.interpreter import run
+from brdfc.cmm.transforms import (
+    Values,
+    check_colours,
+    device_transform,
+    pipeline,
+    run_pipeline,
+    transform_variables,
+)
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import NumberArray, Pipeline, Utf8Array
 from brdfc.profiles.brdf_function import ANGLES
 from brdfc.profiles.metadata import Described, describe, value_text
 from brdfc.source.diagnostics import did_you_mean
-from brdfc.source.errors import LinkError, ProgramError, ValueGivenError
+from brdfc.source.errors import LinkError, ValueGivenError
 
 ProfileOrPath = Profile | str | Path
-Values = NDArray[np.float32]
-
-DEVICE_TRANSFORMS = ("A2B1", "A2B0", "A2B3")
-"""Of a profile of device values the first of these: its colours are media-relative."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,8 @@ class Link:
 
     channels: the names of the samples of a pixel. profile: the last, in whose connection space the
     values are; transform: the tag that leads there. defaulted: the names of the channels that take
-    their default. described: what the first says of its channels.
+    their default. environment: variables by signature, see engine.interpreter.run. described: what
+    the first says of its channels.
     """
 
     channels: tuple[str, ...]
@@ -67,7 +69,7 @@ class Link:
     profile: Profile
     transform: str
     defaulted: tuple[str, ...]
-    environment: Mapping[str, float]
+    environment: Mapping[str, ArrayLike]
     described: tuple[Described, ...]
 
     @property
@@ -120,6 +122,7 @@ def _pair(source: Profile, destination: Profile, env: Mapping[str, float], trans
     _check_class(source, "mid ", "first", "a MID")
     _check_class(destination, "mvis", "second", "an MVIS")
     first, second = pipeline(source, "A2M0"), pipeline(destination, transform)
+    check_colours(destination, transform, second.outputs)
     given, wanted = _names(source), _names(destination)
     if (len(given), len(wanted)) != (first.outputs, second.inputs):
         raise LinkError("the channel names ('mcta') do not match the transforms' channels")
@@ -147,6 +150,7 @@ def _pair(source: Profile, destination: Profile, env: Mapping[str, float], trans
 def _single(profile: Profile, env: Mapping[str, float], transform: str | None) -> Link:
     found = transform or device_transform(profile)
     only = pipeline(profile, found)
+    check_colours(profile, found, only.outputs)
     described = describe(profile, "channel")
     names = tuple(name for d in described for name in d.component_names)
     if found.startswith("b") and len(names) + len(ANGLES) == only.inputs:
@@ -164,6 +168,7 @@ def connect_alone(profile: Profile, env: Mapping[str, float] | None = None) -> L
     if profile.header.device_class != "mvis":
         return _single(profile, env or {}, None)
     only, names = pipeline(profile, "M2B0"), _names(profile)
+    check_colours(profile, "M2B0", only.outputs)
     if len(names) != only.inputs:
         raise LinkError("the channel names ('mcta') do not match the transform's channels")
     environment = _environment(profile, "M2B0", env or {})
@@ -189,36 +194,6 @@ def variable_names(link: Link) -> dict[str, str]:
     the signature where the profile does not say."""
     known = transform_variables(link.profile, link.transform)
     return {(d.name if d else s): s for s, d in known}
-
-
-def device_transform(profile: Profile) -> str:
-    """The tag of a profile of device values that leads to colours."""
-    kind = profile.header.device_class
-    if kind in ("mid ", "mvis"):
-        other = "an MVIS" if kind == "mid " else "a MID"
-        raise LinkError(f"one profile, and it needs {other}", hint="give the MID, then the MVIS")
-    found = next((t for t in DEVICE_TRANSFORMS if isinstance(profile.tags.get(t), Pipeline)), None)
-    if found is None:
-        raise LinkError(
-            f"the profile (class '{kind}') has no transform to colours that can be run",
-            hint=f"one of {', '.join(DEVICE_TRANSFORMS)} with processing elements is needed",
-        )
-    return found
-
-
-def transform_variables(
-    profile: Profile, transform: str
-) -> tuple[tuple[str, Described | None], ...]:
-    """The variables a transform reads: signature, and its description if it has one."""
-    described = {d.signature: d for d in describe(profile, "env")}
-    signatures: dict[str, None] = {}
-    for element in pipeline(profile, transform).elements:
-        if isinstance(element, Program):
-            try:
-                signatures |= dict.fromkeys(verify(element).variables)
-            except ProgramError as error:
-                raise LinkError(f"the profile's program is refused: {error}") from error
-    return tuple((s, described.get(s)) for s in signatures if s not in ("true", "ndef"))
 
 
 def _environment(profile: Profile, transform: str, given: Mapping[str, float]) -> dict[str, float]:
@@ -253,18 +228,6 @@ def _in_range(name: str, value: float, described: Described | None) -> float:
     return rounded
 
 
-def run_pipeline(
-    transform: Pipeline, pixels: ArrayLike, environment: Mapping[str, float]
-) -> Values:
-    """The elements of a transform, one after the other."""
-    values = np.asarray(pixels, dtype=np.float32)
-    if values.ndim == 0 or values.shape[-1] != transform.inputs:
-        raise ProgramError(f"{transform.inputs} channels are needed, the array is {values.shape}")
-    for element in transform.elements:
-        values = run(element, values, environment)
-    return values
-
-
 def _profile(given: ProfileOrPath) -> Profile:
     return given if isinstance(given, Profile) else Profile.load(given)
 
@@ -276,23 +239,6 @@ def _check_class(profile: Profile, wanted: str, place: str, name: str) -> None:
             f"the {place} profile must be {name} (class '{wanted}'), this is of class '{found}'",
             hint="give the MID first, then the MVIS" if found in ("mid ", "mvis") else None,
         )
-
-
-def pipeline(profile: Profile, signature: str) -> Pipeline:
-    """A transform of a profile, whose elements fit each other; LinkError where there is none."""
-    tag = profile.tags.get(signature)
-    if not isinstance(tag, Pipeline):
-        spectral = "compile the model with --spectral 400nm..700nm,10nm"
-        hint = spectral if signature.startswith(("M2S", "D2B")) else None
-        raise LinkError(f"the profile has no '{signature}' transform", hint=hint)
-    channels = tag.inputs
-    for element in tag.elements:
-        if element.inputs != channels:
-            raise LinkError(f"the elements of '{signature}' do not fit each other's channels")
-        channels = element.outputs
-    if channels != tag.outputs:
-        raise LinkError(f"the elements of '{signature}' do not fit its {tag.outputs} outputs")
-    return tag
 
 
 def _names(profile: Profile) -> tuple[str, ...]:

@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from brdfc.cmm.link import Link, pipeline, run_pipeline
+from brdfc.cmm.link import Link
+from brdfc.cmm.transforms import leads_to_reflectances, pipeline, run_pipeline
 from brdfc.colour.adaptation import adaptation_matrix, adaptation_transform
 from brdfc.colour.conditions import (
     ViewingConditions,
@@ -28,7 +29,6 @@ from brdfc.colour.picture import srgb
 from brdfc.colour.spectrum import Grid
 from brdfc.icc.header import D50 as HEADER_D50
 from brdfc.icc.profile import Profile
-from brdfc.icc.signatures import NO_SPACE
 from brdfc.icc.types import Pipeline
 from brdfc.profiles.conditions import stated_conditions
 from brdfc.source.diagnostics import did_you_mean
@@ -133,7 +133,7 @@ def rendering(
     what makes no sense of this profile.
     """
     to = target(to) if isinstance(to, str) else to
-    spectral = leads_to_reflectances(link)
+    spectral = leads_to_reflectances(link.profile, link.transform)
     if to is Target.SPECTRUM:
         if not spectral:
             raise LinkError("the profile has no reflectances to give", hint=_SPECTRAL)
@@ -142,8 +142,8 @@ def rendering(
         return Rendering(link, to, (1.0, 1.0, 1.0), note="reflectances")
     if conditions is not None and not spectral:
         raise LinkError(
-            "another light or observer needs reflectances, and the profile has none",
-            hint=_SPECTRAL,
+            f"another light or observer needs reflectances, and '{link.transform}' leads to none",
+            hint=f"leave out --transform, or {_SPECTRAL}",
         )
     if spectral:
         found = _of_reflectances(link, to, conditions)
@@ -155,12 +155,15 @@ def rendering(
 _SPECTRAL = "compile the model with --spectral 400nm..700nm,10nm"
 
 
-def leads_to_reflectances(link: Link) -> bool:
-    """Whether the values of a link are reflectances, not X, Y, Z."""
-    kind = link.transform[:3]
-    return kind in ("M2S", "bDB") or (
-        kind == "D2B" and link.profile.header.spectral_pcs != NO_SPACE
-    )
+def seen_conditions(
+    link: Link, light: str | None, observed_by: str | None
+) -> ViewingConditions | None:
+    """The conditions that a profile's reflectances are seen under with another light or observer:
+    of the two, what is not given is the profile's. None where neither is."""
+    if light is None and observed_by is None:
+        return None
+    stated = stated_conditions(link.profile) or viewing_conditions()
+    return stated.seen_with(light, observed_by)
 
 
 def profile_white(profile: Profile) -> XYZ:
@@ -184,24 +187,28 @@ def spectral_grid(profile: Profile) -> Grid:
     return Grid(found.start, found.end, found.steps)
 
 
-def adapted_xyz(xyz: ArrayLike, white: XYZ, adapt: str | None) -> tuple[Array, XYZ]:
+def adapted_xyz(
+    xyz: ArrayLike, white: XYZ, adapt: str | None, transform: str = "bradford"
+) -> tuple[Array, XYZ]:
     """XYZ (..., 3) under a white as it is under another, and that white.
 
-    adapt: as for rendering; by way of D50, linear Bradford.
+    adapt and transform: as for rendering; to D50 by linear Bradford, and from there.
     """
     exact = np.asarray(xyz, dtype=np.float64)
     if adapt is None:
         return exact, white
     _, wanted = _white(adapt)
-    both = adaptation_matrix(D50, wanted) @ adaptation_matrix(white, D50)
+    onward = adaptation_matrix(D50, wanted, adaptation_transform(transform))
+    both = onward @ adaptation_matrix(white, D50)
     return exact @ both.T, wanted
 
 
 def _of_reflectances(link: Link, to: Target, conditions: ViewingConditions | None) -> Rendering:
     seen = conditions or stated_conditions(link.profile) or viewing_conditions()
-    matrix = seen.reflectances_to_xyz(spectral_grid(link.profile))
-    if matrix.shape[1] != link.outputs:
-        raise LinkError(f"{link.outputs} reflectances at {matrix.shape[1]} wavelengths")
+    grid = spectral_grid(link.profile)
+    if grid.steps != link.outputs:
+        raise LinkError(f"{link.outputs} reflectances at {grid.steps:,} wavelengths")
+    matrix = seen.reflectances_to_xyz(grid)
     return Rendering(link, to, seen.white, observer=matrix, note=f"under {seen}")
 
 
@@ -213,13 +220,19 @@ def _adapted(found: Rendering, adapt: str | None, transform: str) -> Rendering:
     if adapt is None:
         return found
     name, white = _white(adapt)
-    if found.white != D50 and found.observer is None:
+    # Reflectances under another light than the profile's come to D50 as the user says.
+    own = found.observer is None or _same(found.white, profile_white(found.link.profile))
+    if found.white != D50 and own:
         found = replace(found, to_standard=_to_standard(found), white=D50)
     if white != found.white:
         matrix = adaptation_matrix(found.white, white, transform)
         found = replace(found, adaptation=matrix, white=white)
     said = "" if found.to is Target.SRGB else f"adapted to {name}"
     return replace(found, note=", ".join(part for part in (found.note, said) if part))
+
+
+def _same(a: XYZ, b: XYZ) -> bool:
+    return bool(np.allclose(a, b, rtol=0, atol=1e-6))
 
 
 def _to_standard(found: Rendering) -> Pipeline:

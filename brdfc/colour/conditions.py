@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from brdfc.colour.adaptation import adaptation_transform
 from brdfc.colour.difference import D50
-from brdfc.colour.illuminants import Illuminant, illuminant, lamp
+from brdfc.colour.illuminants import CUSTOM, Illuminant, illuminant, lamp
 from brdfc.colour.observers import Observer, observer
 from brdfc.colour.spectrum import Grid, Spectra, interpolation
 from brdfc.source.diagnostics import did_you_mean
@@ -25,8 +25,15 @@ LUMINANCE = 500 / math.pi
 SURROUNDS = {"average": 0.2, "dim": 0.1, "dark": 0.0}
 """The luminance of the surround by its name, over that of the white. For an average surround CIE
 159:2004 asks for a fifth at least; below that it is dim, and dark at 0."""
-_SEEN = (400.0, 700.0)
+SEEN = (400.0, 700.0)
 """Nanometres that every spectrum has to cover."""
+_LUMINANCES = (1e-6, 1e9)
+"""cd/m2, of a light that has a colour and can be looked at, generously."""
+_SAME_WHITE = 1e-4
+_FARTHEST = 1e3
+"""How far X and Z may be from Y, as a factor; of no spectrum they are farther."""
+_STEP = 5.0
+"""Nanometres; spectra in wider steps are read between them, as observers change within a step."""
 _ENDED = 1e-3
 """Colour matching functions this far below their greatest value, at their ends, are at an end."""
 
@@ -65,8 +72,17 @@ class ViewingConditions:
         a perfect diffuser has this white.
         """
         weighted = (self.matching * self.power) @ interpolation(grid, self.grid.wavelengths)
-        scale = np.asarray(self.white) / weighted.sum(axis=1)
+        seen = weighted.sum(axis=1)
+        if not (np.isfinite(seen).all() and seen.min() > 0):
+            raise SpectrumError("the light has no power where the observer sees")
+        scale = np.asarray(self.white) / seen
         return np.asarray(weighted * scale[:, None])
+
+    def seen_with(self, light: str | None, observed_by: str | None) -> ViewingConditions:
+        """The same with another light, another observer, or both; see viewing_conditions."""
+        source = Illuminant(self.illuminant, Spectra(self.grid, self.power[None]), self.temperature)
+        eye = Observer(self.observer, Spectra(self.grid, self.matching))
+        return viewing_conditions(light or source, observed_by or eye)
 
     def __str__(self) -> str:
         kelvin = f" {self.temperature:g} K" if self.temperature else ""
@@ -75,8 +91,8 @@ class ViewingConditions:
 
 
 def viewing_conditions(
-    light: str | None = None,
-    observed_by: str | None = None,
+    light: str | Illuminant | None = None,
+    observed_by: str | Observer | None = None,
     white: Sequence[float] | None = None,
     surround: str | None = None,
     luminance: float | None = None,
@@ -92,13 +108,17 @@ def viewing_conditions(
 
     Raises ValueGivenError for what cannot be, and SpectrumError for spectra that do not fit.
     """
-    functions = observer(observed_by or STANDARD_OBSERVER)
+    functions = (
+        observed_by
+        if isinstance(observed_by, Observer)
+        else observer(observed_by or STANDARD_OBSERVER)
+    )
     measured = None if white is None else normalised_white(white)
     if light is None and measured is not None:
         grid = _tabulated(functions)
         source = lamp(measured, functions.matching.at(grid.wavelengths), grid)
     else:
-        source = illuminant(light or "D50")
+        source = light if isinstance(light, Illuminant) else illuminant(light or "D50")
     power = _observed(source, functions)
     matching = functions.matching.at(power.grid.wavelengths)
     summed = matching @ power.values[0]
@@ -107,12 +127,14 @@ def viewing_conditions(
     own: XYZ = (float(summed[0] / summed[1]), 1.0, float(summed[2] / summed[1]))
     if (source.name, functions.name) == ("D50", STANDARD_OBSERVER):
         own = D50  # by definition, whatever the table's fifth digit
-    level = _positive("luminance", LUMINANCE if luminance is None else luminance)
+    level = _luminance(LUMINANCE if luminance is None else luminance)
     found = measured or own
-    return ViewingConditions(
+    # With another white than its own it is no longer the light that has the name.
+    named = max(abs(a - b) for a, b in zip(found, own, strict=True)) < _SAME_WHITE
+    conditions = ViewingConditions(
         white=found,
-        illuminant=source.name,
-        temperature=source.temperature,
+        illuminant=source.name if named else CUSTOM,
+        temperature=source.temperature if named else 0.0,
         observer=functions.name,
         grid=power.grid,
         power=power.values[0],
@@ -122,6 +144,12 @@ def viewing_conditions(
         adaptation=adaptation_transform(adaptation or "bradford"),
         lamp_made=light is None and measured is not None,
     )
+    if adaptation is not None and conditions.standard:
+        raise ValueGivenError(
+            "an adaptation is asked for, and the light is D50: there is nothing to adapt",
+            hint="say what the light is: --white or --illuminant",
+        )
+    return conditions
 
 
 def normalised_white(white: Sequence[float]) -> XYZ:
@@ -136,12 +164,15 @@ def normalised_white(white: Sequence[float]) -> XYZ:
         )
     if min(x, z) <= 0:
         raise ValueGivenError(f"the white {x:g},{y:g},{z:g} has a value that is not above 0")
+    if not all(1 / _FARTHEST < v / y < _FARTHEST for v in (x, z)):
+        raise ValueGivenError(f"the white {x:g},{y:g},{z:g} is no light's: X and Z are near Y")
     return (x / y, 1.0, z / y)
 
 
-def _positive(what: str, value: float) -> float:
-    if not (math.isfinite(value) and value > 0):
-        raise ValueGivenError(f"the {what} is {value:g}; it has to be a finite number above 0")
+def _luminance(value: float) -> float:
+    low, high = _LUMINANCES
+    if not low <= value <= high:
+        raise ValueGivenError(f"the luminance is {value:g}; it has to be {low:g}..{high:g} cd/m2")
     return value
 
 
@@ -156,8 +187,8 @@ def _observed(source: Illuminant, functions: Observer) -> Spectra:
     """The part of a light's spectrum that an observer sees."""
     light, eye = source.power.grid, functions.matching.grid
     for grid, what in ((light, "illuminant"), (eye, "observer")):
-        if grid.start > _SEEN[0] or grid.end < _SEEN[1]:
-            low, high = _SEEN
+        if grid.start > SEEN[0] or grid.end < SEEN[1]:
+            low, high = SEEN
             raise SpectrumError(
                 f"the {what} covers {grid}; {low:g}..{high:g} nm at least are needed"
             )
@@ -166,13 +197,14 @@ def _observed(source: Illuminant, functions: Observer) -> Spectra:
         (light.start < eye.start, functions.matching.values[:, 0]),
         (light.end > eye.end, functions.matching.values[:, -1]),
     ):
-        if beyond and values.max() > _ENDED * greatest:
+        # The standard observers end where they are defined to.
+        if functions.name == CUSTOM and beyond and values.max() > _ENDED * greatest:
             raise SpectrumError(
                 f"the observer covers {eye}, the illuminant {light}, and the colour matching "
                 "functions are not at an end there",
                 hint="give functions that cover the light's spectrum",
             )
-    return source.power.cut(eye.start, eye.end)
+    return source.power.in_steps(_STEP).cut(eye.start, eye.end)
 
 
 def _surround(text: str, white: XYZ, luminance: float) -> XYZ:

@@ -17,13 +17,15 @@ from brdfc.source.errors import ValueGivenError
 VISIBLE = Grid(360.0, 780.0, 85)
 """Where spectra that are made here are tabulated."""
 
+CUSTOM = "custom"
+"""The name of a light, or of an observer, that has no other."""
 _TEMPERATURE = re.compile(r"(blackbody|daylight):(\d+(?:\.\d*)?)K?", re.IGNORECASE)
 _LOWEST, _HIGHEST = {"blackbody": 1000.0, "daylight": 4000.0}, {"blackbody": 1e5, "daylight": 25e3}
 
 
 @dataclass(frozen=True)
 class Illuminant:
-    """name: as the user gave it, or "custom"; temperature: kelvin, 0 where there is none; power:
+    """name: as the user gave it, or CUSTOM; temperature: kelvin, 0 where there is none; power:
     one spectrum, relative."""
 
     name: str
@@ -43,7 +45,8 @@ def illuminant(text: str) -> Illuminant:
     if found:
         return _of_temperature(found[1].lower(), float(found[2]))
     if names_a_file(named):
-        return Illuminant("custom", read_spectra(named, 1, "illuminant"))
+        read = read_spectra(named, 1, "illuminant")
+        return Illuminant(CUSTOM, Spectra(read.grid, read.values / read.values.max() * 100))
     spectra = colour_science().SDS_ILLUMINANTS
     known = {name.upper(): name for name in spectra}
     name = known.get(named.upper()) or known.get(re.sub("^F(?=[0-9])", "FL", named.upper()))
@@ -99,7 +102,7 @@ def lamp(white: Sequence[float], matching: NDArray[np.float64], grid: Grid) -> I
             break
         parameters = parameters - change * min(1.0, 1 / max(float(np.abs(change).max()), 1e-300))
         if np.abs(change).max() < 1e-12:
-            return Illuminant("custom", Spectra(grid, power[None] / power.max() * 100))
+            return Illuminant(CUSTOM, Spectra(grid, power[None] / power.max() * 100))
     shown = ",".join(f"{v:g}" for v in white)
     raise ValueGivenError(
         f"no lamp has the white {shown}",

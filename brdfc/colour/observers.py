@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from brdfc.colour.illuminants import CUSTOM
 from brdfc.colour.library import colour_science
 from brdfc.colour.spectrum import Spectra, names_a_file, read_spectra
 from brdfc.source.diagnostics import did_you_mean
@@ -20,7 +21,7 @@ OBSERVERS = {
 
 @dataclass(frozen=True)
 class Observer:
-    """name: of OBSERVERS, or "custom"; matching: x, y, z."""
+    """name: of OBSERVERS, or CUSTOM; matching: x, y, z."""
 
     name: str
     matching: Spectra
@@ -33,7 +34,7 @@ def observer(text: str) -> Observer:
     """
     named = text.strip()
     if names_a_file(named):
-        return Observer("custom", read_spectra(named, 3, "observer"))
+        return Observer(CUSTOM, read_spectra(named, 3, "observer"))
     if named not in OBSERVERS:
         hint = did_you_mean(named, OBSERVERS) or f"{', '.join(OBSERVERS)}, or a file FILE.csv"
         raise ValueGivenError(f"there is no observer '{named}'", hint=hint)

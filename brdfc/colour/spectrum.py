@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import io
 import math
 from collections.abc import Sequence
@@ -16,6 +15,8 @@ from numpy.typing import NDArray
 from brdfc.files import read_file
 from brdfc.source.errors import SpectrumError
 
+MOST_STEPS = 4096
+"""Wavelengths of a spectrum: a tenth of a nanometre over all that is visible."""
 _LONGEST = 1 << 20
 """Bytes of a table: a wavelength and some values in every line, a few thousand lines at most."""
 
@@ -68,6 +69,15 @@ class Spectra:
         """(spectra, wavelengths), see interpolation."""
         return np.stack([np.interp(wavelengths, self.grid.wavelengths, v) for v in self.values])
 
+    def in_steps(self, most: float) -> Spectra:
+        """The same in steps no wider than so many nanometres, linear between its own."""
+        span = self.grid.end - self.grid.start
+        parts = math.ceil(span / (self.grid.steps - 1) / most - 1e-9)
+        if parts <= 1:
+            return self
+        grid = Grid(self.grid.start, self.grid.end, (self.grid.steps - 1) * parts + 1)
+        return Spectra(grid, self.at(grid.wavelengths))
+
     def cut(self, start: float, end: float) -> Spectra:
         """The same between two wavelengths."""
         part = self.grid.part(start, end)
@@ -89,6 +99,8 @@ def read_spectra(path: str | Path, count: int, what: str) -> Spectra:
     gap, and for values that are negative or no finite numbers. what: for messages, "illuminant".
     """
     rows = _rows(path, count, what)
+    if len(rows) > MOST_STEPS:
+        raise SpectrumError(f"{len(rows):,} wavelengths are too many", where=str(path))
     if len(rows) < 3:
         raise SpectrumError(f"{len(rows)} wavelengths; a spectrum has 3 at least", where=str(path))
     wavelengths = np.array([wavelength for _, wavelength, _ in rows])
@@ -144,8 +156,7 @@ def _rows(path: str | Path, count: int, what: str) -> list[tuple[int, float, lis
 def _words(content: str) -> Sequence[str]:
     for separator in ",;\t":
         if separator in content:
-            row = next(csv.reader([content], delimiter=separator))
-            return [word.strip() for word in row]
+            return [word.strip(" \"'\r\n") for word in content.split(separator)]
     return content.split()
 
 

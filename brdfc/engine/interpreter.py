@@ -51,7 +51,7 @@ class _Machine:
     """The state of a set of pixels: channels, stack (top last), temporaries, outputs."""
 
     program: Program
-    environment: Mapping[str, float]
+    environment: Mapping[str, Values]
     inputs: list[Values]
     stack: list[Values] = field(default_factory=list)
     temporaries: dict[int, Values] = field(default_factory=dict)
@@ -71,7 +71,7 @@ class _Machine:
 
         return _Machine(
             self.program,
-            self.environment,
+            {k: part(v) for k, v in self.environment.items()},
             [part(v) for v in self.inputs],
             [part(v) for v in self.stack],
             {k: part(v) for k, v in self.temporaries.items()},
@@ -81,12 +81,13 @@ class _Machine:
 
 
 def run(
-    element: Element, pixels: ArrayLike, environment: Mapping[str, float], *, ieee: bool = False
+    element: Element, pixels: ArrayLike, environment: Mapping[str, ArrayLike], *, ieee: bool = False
 ) -> Values:
     """Apply an element, usually a calculator, to pixels.
 
     pixels: (..., inputs), taken as float32. environment: variables by signature (four letters,
-    spaces at the end left out); `env` finds the others undefined. ieee: x/0 is an infinity or NaN,
+    spaces at the end left out), a number each, or an array (...) of one for each pixel; `env` finds
+    the others undefined. ieee: x/0 is an infinity or NaN,
     as on engines that leave it to the processor. Returns (..., outputs), float32.
     Raises ProgramError when a program cannot be proven safe or the channels do not fit.
     """
@@ -98,22 +99,30 @@ def run(
     if array.ndim == 0 or array.shape[-1] != element.inputs:
         raise ProgramError(f"{element.inputs} channels are needed, the array is {array.shape}")
     flat = array.reshape(math.prod(array.shape[:-1]), element.inputs)
+    variables = {name: _variable(v, array.shape[:-1]) for name, v in environment.items()}
     result = np.empty((len(flat), element.outputs), dtype=np.float32)
     binary = IEEE if ieee else BINARY
     with np.errstate(all="ignore"):
         for start in range(0, len(flat), step):
             block = flat[start : start + step]
             channels = [np.ascontiguousarray(block[:, c]) for c in range(element.inputs)]
-            outputs = _apply(element, channels, environment, binary)
+            here = {n: v[start : start + step] if v.ndim else v for n, v in variables.items()}
+            outputs = _apply(element, channels, here, binary)
             for channel, values in enumerate(outputs):
                 result[start : start + step, channel] = values
     return result.reshape(*array.shape[:-1], element.outputs)
 
 
+def _variable(value: ArrayLike, shape: tuple[int, ...]) -> Values:
+    """A number, or one for each pixel."""
+    array = np.asarray(value, dtype=np.float32)
+    return np.broadcast_to(array, shape).ravel() if array.ndim else array
+
+
 def _apply(
     element: Element,
     inputs: list[Values],
-    environment: Mapping[str, float],
+    environment: Mapping[str, Values],
     binary: Mapping[str, Kernel],
 ) -> list[Values]:
     """Any element on a list of channels."""
@@ -210,7 +219,7 @@ def _run_op(op: Op, machine: _Machine) -> None:
     elif name == "env":
         value = _FIXED.get(op.signature, machine.environment.get(op.signature))
         defined = value is not None and op.signature != "ndef"
-        stack += [np.asarray(v, np.float32) for v in (value or 0.0, float(defined))]
+        stack += [np.asarray(v, np.float32) for v in (0.0 if value is None else value, defined)]
     elif name == "data" or name in _CONSTANTS:
         stack.append(np.asarray(_CONSTANTS.get(name, op.value), dtype=np.float32))
     else:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from brdfc.files import refuse_same
 from brdfc.images.directions import NAMES, Arrangement, Faced, angles, positions
 from brdfc.images.tiff import CoefficientImage, open_samples, write_colours
 from brdfc.source.errors import ImageError
@@ -32,6 +33,7 @@ def angles_to_tiff(
     profile with the angles among its channels takes.
     Raises ImageError for images that do not fit, and for normals that have no direction.
     """
+    refuse_same([target], [normals, heights, coefficients])
     faced = Faced()
     with ExitStack() as stack:
         image = stack.enter_context(open_samples(normals, _KINDS))
@@ -52,10 +54,11 @@ def angles_to_tiff(
                 size = (len(band), image.height, image.width)
                 places = positions(top, *size, scene.width)
                 if raised is not None:
-                    places[..., 2] = raised.rows(rows)[..., 0]
+                    places[..., 2] = _finite(raised.rows(rows), str(heights), top)[..., 0]
                 found = angles(vectors, places, scene, faced)
                 if others is not None:
-                    found = np.concatenate([others.rows(rows), found], axis=-1)
+                    more = _finite(others.rows(rows), str(coefficients), top)
+                    found = np.concatenate([more, found], axis=-1)
                 yield found
                 top += len(band)
                 progress(top, image.height)
@@ -82,6 +85,19 @@ def _beside(
             where=str(path),
         )
     return found
+
+
+def _finite(band: NDArray[np.float32], where: str, top: int) -> NDArray[np.float32]:
+    """The same, once it is sure that all of it are numbers."""
+    bad = ~np.isfinite(band)
+    if bad.any():
+        row, column, _ = (int(i) for i in np.argwhere(bad)[0])
+        raise ImageError(
+            f"{int(bad.sum())} samples of this part are NaN or infinite, the first at row "
+            f"{top + row}, column {column}",
+            where=where,
+        )
+    return band
 
 
 def _vectors(

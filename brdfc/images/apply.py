@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from brdfc.cmm.link import Link
 from brdfc.cmm.rendering import Rendering, Target
+from brdfc.files import refuse_same
 from brdfc.images.tiff import WRITING, Band, open_coefficients, write_colours
 from brdfc.source.errors import ImageError
 
@@ -40,9 +41,8 @@ def apply_to_tiff(
     link, or that holds NaN or infinity anywhere (with their count). progress gets rows done and
     rows in all.
     """
-    source, target, link = Path(source), Path(target), rendering.link
-    if target.exists() and source.exists() and target.samefile(source):
-        raise ImageError("the output would replace its own input", where=str(target))
+    link = rendering.link
+    refuse_same([target], [source])
     with open_coefficients(source) as image:
         names = link.channels
         if image.channels != len(names):

@@ -2,7 +2,8 @@
 
 The surface is looked at along -z: x to the right, y up, the first row of an image at the top. A
 pixel lies where the image puts it, at height 0 unless a height is given. Angles are those of the
-models: from the normal, azimuths from the tangent that x has on the surface.
+models: from the normal, azimuths from the tangent that x has on the surface. What is at the light
+itself, or at the camera, gets 90 degrees.
 """
 
 from __future__ import annotations
@@ -39,11 +40,13 @@ class Arrangement:
 
 @dataclass
 class Faced:
-    """What was met: pixels that face away from the light or from the camera, and the largest angle
-    between a direction and the plane of incidence (plane geometry; radians)."""
+    """What was met: pixels that face away from the light or from the camera, and those that one of
+    them is at; the largest angle between a direction and the plane of incidence (plane geometry;
+    radians)."""
 
     from_light: int = 0
     from_camera: int = 0
+    touched: int = 0
     leaves_plane: float = 0.0
 
 
@@ -67,10 +70,9 @@ def angles(normals: Array, places: Array, scene: Arrangement, faced: Faced) -> N
     normal = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
     tangent = _tangent(normal)
     across = np.cross(normal, tangent)
-    found = [
-        _polar(normal, tangent, across, _towards(point, places, scene.distant))
-        for point in (scene.light, scene.camera)
-    ]
+    towards = [_towards(point, places, scene.distant) for point in (scene.light, scene.camera)]
+    faced.touched += sum(int((to == 0).all(axis=-1).sum()) for to in towards)
+    found = [_polar(normal, tangent, across, to) for to in towards]
     (incident, light_azimuth), (reflection, camera_azimuth) = found
     faced.from_light += int((incident > math.pi / 2).sum())
     faced.from_camera += int((reflection > math.pi / 2).sum())
@@ -105,4 +107,5 @@ def _towards(point: Vector, places: Array, distant: bool) -> Array:
 def _polar(normal: Array, tangent: Array, across: Array, to: Array) -> tuple[Array, Array]:
     """Zenith and azimuth of a direction; of both, arcs of tangents lose no digits anywhere."""
     x, y, z = ((to * axis).sum(axis=-1) for axis in (tangent, across, normal))
-    return np.arctan2(np.hypot(x, y), z), np.arctan2(y, x)
+    zenith = np.where((to == 0).all(axis=-1), RIGHT, np.arctan2(np.hypot(x, y), z))
+    return zenith, np.arctan2(y, x)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -25,6 +26,8 @@ _KIND_NAMES: dict[type, str] = {
     np.uint8: "8-bit",
     np.uint16: "16-bit integers",
 }
+_LARGEST = 2**32 - 2**25
+"""Bytes of samples that a TIFF holds with everything around them."""
 BAND_PIXELS = 1 << 18
 """Pixels a band holds: a few megabytes, whatever the size of the image."""
 
@@ -149,7 +152,9 @@ def write_colours(
         yield first
         yield from iterator
 
-    with whole_file(path) as temporary, tifffile.TiffWriter(temporary) as tiff:
+    # The size of a TIFF is limited to 4 GiB, and that of a BigTIFF is not.
+    big = math.prod(shape) * first.dtype.itemsize > _LARGEST
+    with whole_file(path) as temporary, tifffile.TiffWriter(temporary, bigtiff=big) as tiff:
         tiff.write(
             strips(),
             shape=shape,

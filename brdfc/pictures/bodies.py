@@ -19,9 +19,11 @@ _ROOM = 2.3
 
 @dataclass(frozen=True)
 class Lit:
-    """inside: the pixels that show the body; xyz: their colours (pixels, 3)."""
+    """inside: the pixels that show the body; places: their x and y, where the body's radius is 1,
+    (pixels, 2); xyz: their colours (pixels, 3)."""
 
     inside: NDArray[np.bool_]
+    places: Array
     xyz: Array
 
 
@@ -46,7 +48,8 @@ def lit(
     if not (subject.full or flat):
         raise ValueGivenError(
             f"'{subject.label}' has its angles in one plane; a {body} has directions in space",
-            hint="use --geometry full, or a cylinder with the light beside it (--azimuth 0deg)",
+            hint="use --geometry full, of a model that imports geometry, or a cylinder with the "
+            "light beside it (--azimuth 0deg)",
         )
     place = positions(0, size, size, size, _ROOM)
     x, y = place[..., 0], place[..., 1]
@@ -60,4 +63,4 @@ def lit(
     scene = Arrangement(light, (0.0, 0.0, 1.0), geometry, distant=True)
     found = angles(normal[inside], place[inside], scene, Faced()).astype(np.float64)
     by_name = {name: found[:, i] for i, name in enumerate(NAMES[geometry])}
-    return Lit(inside, exposure * subject.colours(by_name))
+    return Lit(inside, place[inside][:, :2], exposure * subject.colours(by_name))

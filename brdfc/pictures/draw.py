@@ -18,20 +18,22 @@ from brdfc.pictures.sweep import QUANTITIES, Sweep, sweep_rows
 from brdfc.source.diagnostics import did_you_mean
 from brdfc.source.errors import BrdfcError, ValueGivenError
 
-SCALES = ("linear", "log", "cbrt")
 RULE = "what sRGB cannot show is clipped, component by component"
 
 
 def picture_kind(path: str | Path) -> str:
     """ "svg" or "png", once it is sure that such a picture can be drawn; BrdfcError otherwise."""
-    kind = chart_kind(path)
+    kind = Path(path).suffix.lower()
     if kind not in (".svg", ".png"):
-        raise BrdfcError(f"'{kind}' is no kind of picture", where=str(path), hint=".svg or .png")
-    return kind[1:]
+        message = f"'{kind}' is no kind of picture" if kind else "a picture's name has a suffix"
+        raise BrdfcError(message, where=str(path), hint="there is .svg and .png")
+    return chart_kind(path)[1:]
 
 
 def scale(text: str) -> str:
-    """A name of SCALES; ValueGivenError for another."""
+    """A name of charts.curves.SCALES; ValueGivenError for another."""
+    from brdfc.charts.curves import SCALES
+
     if text not in SCALES:
         hint = did_you_mean(text, SCALES) or ", ".join(SCALES)
         raise ValueGivenError(f"there is no scale '{text}'", hint=hint)
@@ -55,6 +57,8 @@ def draw_sweeps(
     from brdfc.charts.lobes import rendered_lobes
 
     kind = picture_kind(path)
+    if scale != "linear" and not max(float(s.values(quantity).max()) for s in sweeps) > 0:
+        raise ValueGivenError(f"no {QUANTITIES[quantity]} is above 0: a {scale} scale shows none")
     incidents = list(dict.fromkeys(s.incident for s in sweeps))
     labels = dict.fromkeys(s.label for s in sweeps)
     whites = dict.fromkeys(s.adapt for s in sweeps)
@@ -143,12 +147,11 @@ def write_sweeps(sweeps: Sequence[Sweep], path: str | Path) -> None:
 
 
 def write_bodies(bodies: Sequence[tuple[str, Lit]], path: str | Path) -> None:
-    """X, Y, Z of every pixel of lit bodies as CSV, whole or not at all."""
+    """X, Y, Z of lit bodies by place, in radii from the middle, as CSV, whole or not at all."""
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
-    table.writerow(["source", "row", "column", "X", "Y", "Z"])
+    table.writerow(["source", "x", "y", "X", "Y", "Z"])
     for label, one in bodies:
-        places = np.argwhere(one.inside)
-        for (row, column), xyz in zip(places.tolist(), one.xyz.tolist(), strict=True):
-            table.writerow([label, row, column, *(f"{v:.9g}" for v in xyz)])
+        for row in np.hstack([one.places, one.xyz]).tolist():
+            table.writerow([label, *(f"{v:.9g}" for v in row)])
     write_whole(path, text.getvalue().encode())

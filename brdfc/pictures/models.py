@@ -12,15 +12,13 @@ from brdfc.colour.conditions import ViewingConditions
 from brdfc.colours import bands, colours_of
 from brdfc.lang.load import load
 from brdfc.laws.reflectance import in_full_geometry
-from brdfc.pictures.sources import AZIMUTHS, INCIDENT, REFLECTION, XYZ, Array, Source
+from brdfc.pictures.sources import DIRECTIONS, XYZ, Array, Source
 from brdfc.roles import assign_roles
 from brdfc.source.errors import ValueGivenError
 from brdfc.symbolic.constants import fold_constants
 from brdfc.symbolic.evaluate import evaluate
 from brdfc.symbolic.expression import Expression
 from brdfc.symbolic.formula import formula
-
-DIRECTIONS = (INCIDENT, REFLECTION, *AZIMUTHS)
 
 
 @dataclass(frozen=True)
@@ -32,6 +30,7 @@ class ModelSubject:
     full: bool
     exact: Expression
     angles: tuple[str, ...]
+    ranges: Mapping[str, tuple[float, float]]
 
     def colours(self, angles: Mapping[str, Array]) -> Array:
         given = {name: angles[name][:, None] for name in self.angles if name in angles}
@@ -44,8 +43,8 @@ class ModelSubject:
         count = len(next(iter(angles.values())))
         return np.broadcast_to(evaluate(self.exact, given), (count, 3))
 
-    def adapted(self, xyz: Array, adapt: str | None) -> tuple[Array, XYZ]:
-        return adapted_xyz(xyz, self.white, adapt)
+    def adapted(self, xyz: Array, adapt: str | None, transform: str) -> tuple[Array, XYZ]:
+        return adapted_xyz(xyz, self.white, adapt, transform)
 
 
 def model_subject(
@@ -53,9 +52,13 @@ def model_subject(
     geometry: str | None,
     conditions: ViewingConditions | None,
     highlight: str | None,
+    usual: str | None = None,
 ) -> ModelSubject:
-    """The subject of a model: what a source gives no value for has its default, but directions."""
+    """The subject of a model: what a source gives no value for has its default, but directions.
+    usual: the geometry of models that leave it open, where none is given."""
     model = load(source.reference, geometry)
+    if geometry is None and usual is not None and model.geometry:
+        model = load(source.reference, usual)
     if bands(model) != 3:
         raise ValueGivenError(
             f"'{model.name}' is a model of spectra",
@@ -68,15 +71,16 @@ def model_subject(
         assign_roles(model, source.values, ())  # says which one, and what is near
     roles = assign_roles(model, values, (), colours.formula_white)
     quantities = (*roles.channels, *roles.variables)
-    usual = {q.name: q.default for q in quantities if q.name not in DIRECTIONS}
-    ready = formula(model, {**roles.constants, **usual}, colours.formula_white)
+    defaults = {q.name: q.default for q in quantities if q.name not in DIRECTIONS}
+    ready = formula(model, {**roles.constants, **defaults}, colours.formula_white)
     if ready.width != 3:
         raise ValueGivenError(f"the radiance of '{model.name}' is no colour")
-    left = tuple(q.name for q in quantities if q.name in DIRECTIONS)
+    left = [q for q in quantities if q.name in DIRECTIONS]
     return ModelSubject(
         source.label,
         colours.colorimetry.white,
         in_full_geometry(model),
         fold_constants(ready.exact),
-        left,
+        tuple(q.name for q in left),
+        {q.name: (q.low, q.high) for q in left},
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,26 +11,23 @@ from brdfc.cmm.link import Link, channel_defaults, connect_alone, variable_names
 from brdfc.cmm.rendering import Rendering, rendering
 from brdfc.icc.profile import Profile
 from brdfc.lang.values import parse_value
-from brdfc.pictures.sources import AZIMUTHS, INCIDENT, REFLECTION, XYZ, Array, Source
-from brdfc.profiles.metadata import describe
+from brdfc.pictures.sources import AZIMUTHS, DIRECTIONS, XYZ, Array, Source
+from brdfc.profiles.metadata import Described, describe
 from brdfc.source.diagnostics import did_you_mean
 from brdfc.source.errors import LinkError, ValueGivenError
-
-DIRECTIONS = (INCIDENT, REFLECTION, *AZIMUTHS)
 
 
 @dataclass(frozen=True)
 class ProfileSubject:
-    """pixel: a value for every channel; places: the channels that are angles, by name; variables:
-    the variables that are, by name."""
+    """pixel: a value for every channel. places: the channels that are directions, by name;
+    variables: the signatures of the variables that are; open: what the profile says of both."""
 
     label: str
-    profile: Profile
     link: Link
     pixel: tuple[float, ...]
     places: Mapping[str, int]
-    variables: frozenset[str]
-    fixed: Mapping[str, float]
+    variables: Mapping[str, str]
+    open: Mapping[str, Described]
 
     @property
     def white(self) -> XYZ:
@@ -40,26 +37,27 @@ class ProfileSubject:
     def full(self) -> bool:
         return any(name in self.places or name in self.variables for name in AZIMUTHS)
 
+    @property
+    def ranges(self) -> Mapping[str, tuple[float, float]]:
+        return {
+            name: (d.origin + d.step * d.low, d.origin + d.step * d.high)
+            for name, d in self.open.items()
+        }
+
     def colours(self, angles: Mapping[str, Array]) -> Array:
         count = len(next(iter(angles.values())))
         pixels = np.tile(np.array(self.pixel, np.float32), (count, 1))
         for name, place in self.places.items():
-            pixels[:, place] = angles[name]
-        runs = np.stack(
-            [angles[name] for name in sorted(self.variables)] or [np.zeros(count)], axis=-1
-        )
-        result = np.empty((count, 3))
-        # A variable is one for a whole run, so points with the same angles go together.
-        keys, which = np.unique(runs, axis=0, return_inverse=True)
-        for number, key in enumerate(keys):
-            run = dict(zip(sorted(self.variables), key.tolist(), strict=False))
-            chosen = which.ravel() == number
-            link = connect_alone(self.profile, {**self.fixed, **run})
-            result[chosen] = link.apply(pixels[chosen])
-        return result
+            sample = self.open.get(name)
+            pixels[:, place] = (
+                (angles[name] - sample.origin) / sample.step if sample else angles[name]
+            )
+        run = {signature: angles[name] for name, signature in self.variables.items()}
+        turned = replace(self.link, environment={**self.link.environment, **run})
+        return turned.apply(pixels).astype(np.float64)
 
-    def adapted(self, xyz: Array, adapt: str | None) -> tuple[Array, XYZ]:
-        found: Rendering = rendering(self.link, adapt=adapt)
+    def adapted(self, xyz: Array, adapt: str | None, transform: str) -> tuple[Array, XYZ]:
+        found: Rendering = rendering(self.link, adapt=adapt, transform=transform)
         return found.colours(xyz), found.white
 
 
@@ -80,18 +78,21 @@ def profile_subject(source: Source) -> ProfileSubject:
             raise ValueGivenError(f"'{source.reference}' has no quantity '{name}'", hint=hint)
         one = described[name]
         values = parse_value(text, one.type, name)
+        if not all(one.low <= v <= one.high for v in values):
+            message = f"{name}={text} lies outside the profile's range {one.range_text}"
+            raise ValueGivenError(message)
         if name in known:
             fixed[name] = values[0]
         else:
             pixel |= dict(zip(one.component_names, values, strict=True))
     open_angles = [n for n in DIRECTIONS if n not in source.values]
     places = {n: link.channels.index(n) for n in open_angles if n in link.channels}
-    variables = frozenset(n for n in open_angles if n in known)
+    variables = {n: known[n] for n in open_angles if n in known}
     if not places and not variables:
         raise ValueGivenError(
             f"'{source.reference}' has no angle 'incident' or 'reflection' to turn",
-            hint="compile it without fixing them",
+            hint="a picture needs a profile that takes them as variables or from the pixel",
         )
-    return ProfileSubject(
-        source.label, profile, link, tuple(pixel.values()), places, variables, fixed
-    )
+    turned = {n: described[n] for n in (*places, *variables) if n in described}
+    ready = connect_alone(profile, fixed)
+    return ProfileSubject(source.label, ready, tuple(pixel.values()), places, variables, turned)

@@ -17,6 +17,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from brdfc.colour.conditions import ViewingConditions
 from brdfc.source.errors import ValueGivenError
 
 Array = NDArray[np.float64]
@@ -24,13 +25,14 @@ XYZ = tuple[float, float, float]
 
 INCIDENT, REFLECTION = "incident", "reflection"
 AZIMUTHS = ("incident_azimuth", "reflection_azimuth")
+DIRECTIONS = (INCIDENT, REFLECTION, *AZIMUTHS)
 
 
 class Subject(Protocol):
     """Something whose colours can be asked for.
 
-    label: its name in a picture; white: of its XYZ, Y = 1; intensity: of its light, where it is
-    the model's own to say; full: directions are zeniths and azimuths.
+    label: its name in a picture; white: of its XYZ, Y = 1; full: directions are zeniths and
+    azimuths; ranges: of its angles by name, radians, where it says.
     """
 
     @property
@@ -42,13 +44,17 @@ class Subject(Protocol):
     @property
     def full(self) -> bool: ...
 
+    @property
+    def ranges(self) -> Mapping[str, tuple[float, float]]: ...
+
     def colours(self, angles: Mapping[str, Array]) -> Array:
         """XYZ (points, 3) for angles (points,) in radians by name; those it does not have are left
         aside. ValueGivenError where it has no angle at all."""
         ...
 
-    def adapted(self, xyz: Array, adapt: str | None) -> tuple[Array, XYZ]:
-        """XYZ as it comes to another white (see cmm.rendering), and that white; None for D50."""
+    def adapted(self, xyz: Array, adapt: str | None, transform: str) -> tuple[Array, XYZ]:
+        """XYZ as it comes to another white (see cmm.rendering), None for its own, and that white;
+        transform: of colour.adaptation."""
         ...
 
 
@@ -72,7 +78,7 @@ _VALUE = re.compile(r"([A-Za-z_]\w*)=(\([^()]*\)|[^\s(),]+)\s*,?")
 def source(text: str, more: Mapping[str, str]) -> Source:
     """A source as a user writes it: REFERENCE [with NAME=VALUE ...] [as LABEL].
 
-    more: values for every source that has such a name. Raises ValueGivenError.
+    more: values for every source. Raises ValueGivenError.
     """
     found = _WHOLE.fullmatch(text.strip())
     if not found:
@@ -116,9 +122,14 @@ def angle_of(text: str) -> float:
 
 
 def open_subjects(
-    sources: Sequence[Source], geometry: str | None, conditions: object, highlight: str | None
+    sources: Sequence[Source],
+    geometry: str | None,
+    conditions: ViewingConditions | None,
+    highlight: str | None,
+    usual: str | None = None,
 ) -> list[Subject]:
-    """The subjects of sources. geometry, conditions and highlight: of those that are models."""
+    """The subjects of sources. geometry, conditions, highlight and usual: of those that are models,
+    see model_subject."""
     from brdfc.pictures.models import model_subject
     from brdfc.pictures.profiles import profile_subject
 
@@ -127,7 +138,7 @@ def open_subjects(
         if one.is_profile:
             subjects.append(profile_subject(one))
         else:
-            subjects.append(model_subject(one, geometry, conditions, highlight))  # type: ignore[arg-type]
+            subjects.append(model_subject(one, geometry, conditions, highlight, usual))
     labels = [s.label for s in subjects]
     for label in labels:
         if labels.count(label) > 1:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,6 +25,7 @@ QUANTITIES = {
     "C": "CIELAB C*ab",
 }
 """What a curve can be of, and its name on an axis."""
+_COLUMNS = ("incident", "reflection", "X", "Y", "Z")
 _LONGEST = 1 << 24
 
 
@@ -69,18 +69,34 @@ def sweeps(
     reflection: Array,
     adapts: Sequence[str | None] = (None,),
     exposure: float = 1.0,
+    transform: str = "bradford",
 ) -> list[Sweep]:
     """Every subject at every incidence under every white. Angles are radians, in the plane of
-    incidence: the mirror direction is reflection = +incident. exposure: XYZ is multiplied by it."""
+    incidence: the mirror direction is reflection = +incident. exposure: XYZ is multiplied by it;
+    transform: how colours are adapted. Raises ValueGivenError for angles that are out of range."""
     found = []
     for incident in incidents:
         for subject in subjects:
+            _check_ranges(subject, {INCIDENT: np.array([incident]), REFLECTION: reflection})
             own = exposure * subject.colours(in_plane(subject, incident, reflection))
             for adapt in adapts:
-                xyz, white = subject.adapted(own, adapt)
+                xyz, white = subject.adapted(own, adapt, transform)
                 angles = (_degrees(incident), np.degrees(reflection))
                 found.append(Sweep(subject.label, *angles, xyz, white, adapt))
     return found
+
+
+def _check_ranges(subject: Subject, angles: Mapping[str, Array]) -> None:
+    for name, values in angles.items():
+        low, high = subject.ranges.get(name, (-math.pi / 2, math.pi / 2))
+        if subject.full:
+            low = -high  # zeniths: a sign turns the azimuth
+        for value in (float(values.min()), float(values.max())):
+            if not low - 1e-6 <= value <= high + 1e-6:
+                raise ValueGivenError(
+                    f"{name}={_degrees(value):g}deg lies outside the range of '{subject.label}', "
+                    f"{_degrees(low):g}deg..{_degrees(high):g}deg"
+                )
 
 
 def _degrees(radians: float) -> float:
@@ -113,9 +129,13 @@ def measured_sweeps(path: str | Path, incidents: Sequence[float], white: XYZ) ->
         text = read_file(path, limit=_LONGEST).decode("utf-8-sig")
     except UnicodeDecodeError:
         raise BrdfcError("this is no text", where=str(path)) from None
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    rows = csv.DictReader(io.StringIO("\n".join(lines)))
-    names = {(name or "").strip(): name for name in rows.fieldnames or ()}
+    lines = [
+        (number, [cell.strip() for cell in line.split(",")])
+        for number, line in enumerate(text.splitlines(), start=1)
+        if line.strip() and not line.startswith("#")
+    ]
+    (_, heading), *rows = lines or [(0, [])]
+    names = {name: place for place, name in enumerate(heading)}
     for needed in ("incident", "reflection", "Y"):
         if needed not in names:
             listed = ", ".join(names) or "none"
@@ -125,18 +145,26 @@ def measured_sweeps(path: str | Path, incidents: Sequence[float], white: XYZ) ->
                 hint="the heading is: incident,reflection,X,Y,Z",
             )
     table = []
-    for number, row in enumerate(rows, start=2):
-        cells = {n: row[names[n]] for n in ("incident", "reflection", "X", "Y", "Z") if n in names}
+    for line, row in rows:
+        where = f"{path}, line {line}"
         try:
-            values = {n: float(cell) for n, cell in cells.items()}
-        except (TypeError, ValueError):
-            raise BrdfcError("not all numbers", where=f"{path}, row {number}") from None
+            values = {n: float(row[names[n]]) for n in _COLUMNS if n in names}
+        except (IndexError, ValueError):
+            raise BrdfcError("not all numbers", where=where) from None
         if not np.isfinite(list(values.values())).all():
-            raise BrdfcError("no finite number", where=f"{path}, row {number}")
+            raise BrdfcError("no finite number", where=where)
         y = values["Y"]
         colour = (values.get("X", y * white[0]), y, values.get("Z", y * white[2]))
         table.append((values["incident"], values["reflection"], *colour))
-    return list(_by_incidence(np.array(table).reshape(-1, 5), incidents, Path(path).stem, white))
+    points = np.array(table).reshape(-1, 5)
+    found = list(_by_incidence(points, incidents, Path(path).stem, white))
+    if not found:
+        wanted = ", ".join(f"{_degrees(i):g}" for i in incidents)
+        there = ", ".join(f"{a:g}" for a in np.unique(points[:, 0])[:12]) or "none"
+        raise BrdfcError(
+            f"no point at the incidence {wanted} deg", where=str(path), hint=f"it has {there} deg"
+        )
+    return found
 
 
 def _by_incidence(

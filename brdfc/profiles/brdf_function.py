@@ -8,10 +8,11 @@ the transform of an ordinary input profile, for one geometry.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import Tag
-from brdfc.profiles.angles import Sample, azimuth, fixed, plain, reading, zenith
+from brdfc.profiles.angles import Sample, azimuth, fixed, reading, zenith
 from brdfc.profiles.content import Content
 from brdfc.profiles.device import device_profile
 
@@ -20,29 +21,35 @@ ANGLES = ("reflection_azimuth", "reflection", "incident_azimuth", "incident")
 
 
 def brdf_function_profile(
-    content: Content, angles: Mapping[str, int], still: Mapping[str, float], unit: str
+    content: Content,
+    angles: Mapping[str, int],
+    still: Mapping[str, float],
+    unit: str,
+    coefficients: Sequence[Sample],
 ) -> Profile:
     """A profile of a program in the full geometry.
 
-    angles: the program's channel of each of ANGLES that it has; its others are the device values,
-    in their order. still: the value of each angle in the ordinary transform, radians. unit: of the
-    four angles (see angles.UNITS).
+    angles: the program's channel of each of ANGLES that it has. still: the value of each angle in
+    the ordinary transform, radians. unit: of the four angles (see angles.UNITS). coefficients: how
+    the program's other channels come from the device values, in their order.
     """
     inputs = content.program.inputs
-    coefficients = [c for c in range(inputs) if c not in angles.values()]
+    others = [c for c in range(inputs) if c not in angles.values()]
     count = len(coefficients)
-    place = {channel: index for index, channel in enumerate(coefficients)}
+    read = dict(zip(others, coefficients, strict=True))
     by_channel = {channel: name for name, channel in angles.items()}
 
     def directed(channel: int) -> Sample:
-        if channel in place:
-            return plain(len(ANGLES) + place[channel])
+        if channel in read:
+            after = read[channel]
+            assert after.sample is not None
+            return replace(after, sample=len(ANGLES) + after.sample)
         name = by_channel[channel]
         of = azimuth if name.endswith("azimuth") else zenith
         return of(ANGLES.index(name), unit)
 
     def at_rest(channel: int) -> Sample:
-        return plain(place[channel]) if channel in place else fixed(still[by_channel[channel]])
+        return read[channel] if channel in read else fixed(still[by_channel[channel]])
 
     first = (reading([directed(c) for c in range(inputs)], len(ANGLES) + count),)
     function = content.colorimetric(first)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from brdfc.calc.program import Matrix
 from brdfc.icc.types import NumberArray, Pipeline, Signature, Structure, Tag
+from brdfc.lang.model import Model
 from brdfc.source.diagnostics import did_you_mean
 from brdfc.source.errors import ValueGivenError
 
@@ -57,14 +58,16 @@ ORDERS = ("channel", "parameter")
 or one parameter of all channels, then the next parameter."""
 
 
-def registered(model: str) -> RegisteredModel:
-    """The registered type of a model; ValueGivenError where it has none."""
-    if model not in REGISTERED:
+def registered(model: Model) -> RegisteredModel:
+    """The registered type of a library model; ValueGivenError where it has none."""
+    found = REGISTERED.get(model.origin)
+    if found is None:
         listed = ", ".join(REGISTERED)
         raise ValueGivenError(
-            f"'{model}' has no registered BRDF type", hint=f"these have: {listed}"
+            f"'{model.origin}' has no registered BRDF type",
+            hint=f"of the library's models these have: {listed}",
         )
-    return REGISTERED[model]
+    return found
 
 
 def parameter_order(text: str) -> str:
@@ -98,6 +101,7 @@ def structure(
     are multiplied by. order: of ORDERS.
     """
     colour = any(p.width > 1 or len(set(p.values)) > 1 for p in parameters.values())
+    colour = colour or (bool(kind.amplitudes) and len(set(white)) > 1)
     channels = len(white) if colour else 1
     rows: list[tuple[NDArray[np.float64], float]] = []
     every = [(c, name) for c in range(channels) for name in kind.parameters]

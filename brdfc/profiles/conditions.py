@@ -13,11 +13,12 @@ from brdfc.calc.program import Matrix
 from brdfc.colour.adaptation import adaptation_matrix
 from brdfc.colour.conditions import ViewingConditions
 from brdfc.colour.difference import D50 as STANDARD_WHITE
-from brdfc.colour.spectrum import Grid, interpolation
+from brdfc.colour.illuminants import CUSTOM
+from brdfc.colour.spectrum import MOST_STEPS, Grid, interpolation
 from brdfc.icc.header import D50, SpectralRange
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import Pipeline, SpectralViewingConditions, Tag, XYZArray
-from brdfc.icc.viewing import ILLUMINANTS, OBSERVERS
+from brdfc.icc.viewing import ILLUMINANTS
 from brdfc.source.errors import LinkError, SpectrumError
 
 XYZ = tuple[float, float, float]
@@ -103,25 +104,31 @@ def stated_conditions(profile: Profile) -> ViewingConditions | None:
     tag = profile.tags.get("svcn")
     if not isinstance(tag, SpectralViewingConditions):
         return None
-    if tag.observer_range.steps < 2 or tag.illuminant_range.steps < 2:
-        raise LinkError("the viewing conditions ('svcn') have no spectra")
+    ranges = (tag.illuminant_range, tag.observer_range)
+    if not all(2 <= r.steps <= MOST_STEPS for r in ranges):
+        steps = " and ".join(f"{r.steps:,}" for r in ranges)
+        raise LinkError(f"the viewing conditions ('svcn') have spectra of {steps} wavelengths")
     if not (tag.white[1] > 0 and min(tag.white) >= 0):
         raise LinkError(f"the white of the viewing conditions ('svcn') is {tag.white}")
-    light, eye = (Grid(r.start, r.end, r.steps) for r in (tag.illuminant_range, tag.observer_range))
+    light, eye = (Grid(r.start, r.end, r.steps) for r in ranges)
     if not (light.start < light.end and eye.start < eye.end):
         raise LinkError("a spectrum of the viewing conditions ('svcn') ends before it starts")
     # What a sample sends back is read where the observer's functions are, as the ICC's engine does:
     # the functions, in their turn, at the light's wavelengths.
+    if not (min(tag.power) >= 0 and max(tag.power) > 0):
+        raise LinkError("the light of the viewing conditions ('svcn') has no power")
     matching = np.array(tag.matching).reshape(3, -1) @ interpolation(light, eye.wavelengths)
     x, y, z = tag.white
-    observer = next((n for n, c in _OBSERVER_CODES.items() if c == tag.observer), "custom")
-    name = ILLUMINANTS.get(tag.illuminant, "custom")
-    standard = (tag.illuminant, tag.observer) == (1, 1)
+    observer = next((n for n, c in _OBSERVER_CODES.items() if c == tag.observer), CUSTOM)
+    name = ILLUMINANTS.get(tag.illuminant, CUSTOM)
+    white: XYZ = (x / y, 1.0, z / y)
+    if (tag.illuminant, tag.observer) == (1, 1) and np.allclose(white, STANDARD_WHITE, atol=1e-3):
+        white = STANDARD_WHITE
     return ViewingConditions(
-        white=STANDARD_WHITE if standard else (x / y, 1.0, z / y),
+        white=white,
         illuminant=name,
         temperature=tag.temperature,
-        observer=observer if tag.observer in OBSERVERS else "custom",
+        observer=observer,
         grid=light,
         power=np.array(tag.power),
         matching=matching,

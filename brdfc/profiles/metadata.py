@@ -29,7 +29,8 @@ from brdfc.source.errors import ValueGivenError
 
 @dataclass(frozen=True)
 class Described:
-    """A quantity as a profile describes it. Numbers are radians for angles."""
+    """A quantity as a profile describes it. Numbers are radians for angles, but of samples that
+    stand for angles otherwise: an angle is then origin + step times the sample."""
 
     name: str
     type: DeclaredType
@@ -38,6 +39,8 @@ class Described:
     default: tuple[float, ...]
     signature: str
     description: str
+    origin: float = 0.0
+    step: float = 1.0
 
     @property
     def component_names(self) -> tuple[str, ...]:
@@ -130,10 +133,12 @@ def _as_sample(described: Described, unit: str | None) -> Described:
     if not described.type.is_angle or unit not in ("degrees", "unit"):
         return described
     low, high = described.low, described.high
-    ends = (0.0, 1.0) if unit == "unit" else (math.degrees(low), math.degrees(high))
-    default = (described.default[0] - low) / (high - low)
-    scaled = (ends[0] + default * (ends[1] - ends[0]),)
-    return replace(described, type=TYPES["number"], low=ends[0], high=ends[1], default=scaled)
+    if unit == "unit" and low == high:
+        return described
+    origin, step = (low, high - low) if unit == "unit" else (0.0, math.pi / 180)
+    low, high, default = ((v - origin) / step for v in (low, high, described.default[0]))
+    sample = replace(described, type=TYPES["number"], low=low, high=high, default=(default,))
+    return replace(sample, origin=origin, step=step)
 
 
 def _described(meta: Dictionary, key: str, name: str) -> Described | None:

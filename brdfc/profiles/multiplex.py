@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from brdfc.calc.program import Op, Program
+from brdfc.files import write_all
 from brdfc.icc.header import Header
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import multiplex_space, n_channel_space
@@ -24,14 +25,17 @@ class ProfilePair:
     mid: Profile
     mvis: Profile
 
+    def files(self, mvis: str | Path, mid: str | Path | None = None) -> list[tuple[Path, bytes]]:
+        """Path and bytes of the MID and of the MVIS; the MID beside the MVIS unless said where."""
+        place = Path(mvis)
+        mid_place = Path(mid) if mid is not None else mid_beside(place)
+        return [(mid_place, self.mid.to_bytes()), (place, self.mvis.to_bytes())]
+
     def save(self, mvis: str | Path, mid: str | Path | None = None) -> tuple[Path, Path]:
-        """Write both; the MID beside the MVIS unless said where. Returns (mid, mvis) paths."""
-        mvis_path = Path(mvis)
-        mid_path = Path(mid) if mid is not None else mid_beside(mvis_path)
-        self.mvis.to_bytes()  # what cannot be encoded fails before either is written
-        self.mid.save(mid_path)
-        self.mvis.save(mvis_path)
-        return mid_path, mvis_path
+        """Write both or none; see files. Returns (mid, mvis) paths."""
+        (mid_place, first), (place, second) = self.files(mvis, mid)
+        write_all((mid_place, first), (place, second))
+        return mid_place, place
 
 
 def mid_beside(mvis: Path) -> Path:

@@ -124,6 +124,11 @@ def test_what_srgb_cannot_show_is_counted(folder: Path, tmp_path: Path) -> None:
         (["--spectral", "400nm..705nm,10nm"], "10nm steps do not lead from 400nm to 705nm"),
         (["--spectral", "visible"], "hint: write 400nm..700nm,10nm"),
         (["--highlight", "equel"], "hint: did you mean 'equal'?"),
+        (["--adaptation", "cat16"], "there is nothing to adapt"),
+        (["--luminance", "1e-50"], "error: the luminance is 1e-50"),
+        (["--spectral", "1000nm..1700nm,100nm"], "colours need 400..700 nm"),
+        (["--mid", "w_mvis.icc"], "w_mvis.icc: two outputs would be written here"),
+        (["--asm", "nowhere/w.txt"], "nowhere/w.txt: cannot write here"),
     ],
 )
 def test_mistakes_are_explained_and_nothing_is_written(
@@ -141,6 +146,45 @@ def test_a_light_needs_reflectances(folder: Path) -> None:
     done = run("eval", *profiles, "--pixel", PIXEL, "--illuminant", "A", cwd=folder)
     assert "error: the profile has no 'M2S0' transform" in done.stderr
     assert "hint: compile the model with --spectral" in done.stderr
+
+
+def test_what_is_not_said_of_the_viewing_is_the_profiles(folder: Path, tmp_path: Path) -> None:
+    """A light beside the profile's own observer, or the reverse."""
+    wide = ["--spectral", "400nm..700nm,50nm", "--illuminant", "A", "--observer", "1964-10"]
+    options = ["--effort", "1", "--adaptation", "cat16"]
+    done = run("compile", "ward", "-o", "a_mvis.icc", *wide, *options, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    pixel = "0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.05,0.15"
+    for adapt in ([], ["--adapt", "D50"]):
+        own = evaluated(tmp_path, "a", *ENV, *adapt, pixel=pixel)
+        for said in (["--illuminant", "A"], ["--observer", "1964-10"]):
+            found = evaluated(tmp_path, "a", *ENV, *adapt, *said, pixel=pixel)
+            assert found == pytest.approx(own, rel=2e-6)
+    assert evaluated(tmp_path, "a", *ENV, "--observer", "1931-2", pixel=pixel) != own
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--transform", "A2M0"], "has no 'A2M0' transform"),
+        (["--adaptation", "cat16"], "give --adapt too"),
+        (["--transform", "M2S1"], "has no 'M2S1' transform"),
+    ],
+)
+def test_what_makes_no_sense_of_a_rendering(options: list[str], message: str, folder: Path) -> None:
+    done = run("eval", "lamp_mid.icc", "lamp_mvis.icc", "--pixel", PIXEL, *options, cwd=folder)
+    assert done.returncode in (1, 2)
+    assert message in done.stderr
+    one = run("eval", "lamp_mid.icc", "--pixel", PIXEL, "--transform", "A2M0", cwd=folder)
+    assert "'A2M0' does not lead to colours" in one.stderr
+
+
+def test_an_output_replaces_no_profile(folder: Path) -> None:
+    files = ["lamp_mid.icc", "lamp_mvis.icc", "c.tif"]
+    before = (folder / "lamp_mvis.icc").read_bytes()
+    done = run("apply", *files, "-o", "lamp_mvis.icc", cwd=folder)
+    assert "lamp_mvis.icc: the output would replace an input" in done.stderr
+    assert (folder / "lamp_mvis.icc").read_bytes() == before
 
 
 def test_a_model_for_three_components_says_so(tmp_path: Path) -> None:

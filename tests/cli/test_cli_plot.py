@@ -72,8 +72,16 @@ def test_measured_points_stand_beside_curves(tmp_path: Path) -> None:
         (["curves", "ward", "--reflection", "0..90"], "hint: write -80deg..80deg,5deg"),
         (["curves", "ward", "--exposure", "0"], "--exposure takes a number above 0"),
         (["curves", "ward", "--measured", "m.csv"], "m.csv: cannot be read"),
-        (["strips", "ward", "--adapt", "A"], "leave out --adapt"),
-        (["strips", "ward", "--measured", "m.csv"], "--measured goes with curves"),
+        (["strips", "ward", "--adapt", "A"], "--adapt is for curves and lobes, not for strips"),
+        (["strips", "ward", "--measured", "m.csv"], "--measured is for curves and lobes"),
+        (["cylinder", "ward", "--reverse"], "--reverse is for curves, not for cylinder"),
+        (["curves", "ward", "--size", "64"], "--size is for sphere and cylinder"),
+        (["curves", "w.icc", "--white", "1,1,1"], "--white is for models"),
+        (["curves", "ward", "--csv", "p.png"], "two outputs would be written here"),
+        (
+            ["curves", "ward with Rd=(0.1,0.3,0.3)", "--quantity", "a", "--scale", "cbrt"],
+            "no CIELAB a* is above 0: a cbrt scale shows none",
+        ),
         (["sphere", "ward", "--geometry", "plane"], "hint: use --geometry full"),
         (["curves", "absent.icc"], "absent.icc: cannot be read"),
     ],
@@ -84,6 +92,19 @@ def test_mistakes_are_explained(arguments: list[str], message: str, tmp_path: Pa
     assert message in done.stderr
     assert "Traceback" not in done.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_a_model_with_angles_of_its_own_is_drawn_on_a_cylinder(tmp_path: Path) -> None:
+    (tmp_path / "gloss.brdf").write_text(
+        'model gloss "G"\nchannel Rd : XYZ in 0..1 = 0.5 "d"\n'
+        'env incident : angle in -90deg..90deg = 45deg as inci "i"\n'
+        "radiance = cos(incident)*Rd/pi\n"
+    )
+    size = ["--size", "64", "-o", "c.png"]
+    done = run("plot", "cylinder", "gloss.brdf", *size, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    done = run("plot", "sphere", "gloss.brdf", *size, cwd=tmp_path)
+    assert "has its angles in one plane" in done.stderr
 
 
 def test_another_kind_of_file_is_refused_at_once(tmp_path: Path) -> None:
@@ -129,7 +150,7 @@ def test_from_normals_to_a_picture(tmp_path: Path) -> None:
     ("arguments", "message"),
     [
         (["--light", "1,0"], "--light takes X,Y,Z"),
-        (["--light", "0,0,0"], "not all 0"),
+        (["--light", "0,0,0", "--distant"], "is a direction, and 0,0,0 is none"),
         (["--light", "1,0,inf"], "finite numbers"),
         (["--light", "1,0,1", "--width", "0"], "--width takes a number above 0"),
         (["--light", "1,0,1"], "n.tif: cannot be read"),

@@ -101,7 +101,8 @@ def test_a_lamp_is_made_for_a_white(white: tuple[float, float, float]) -> None:
 def test_a_measured_white_stands_beside_a_named_light() -> None:
     found = viewing_conditions("A", white=(1.09, 1, 0.36))
     assert found.white == (1.09, 1.0, 0.36)
-    assert found.illuminant == "A"
+    assert found.illuminant == "custom"  # what is called A has another white
+    assert viewing_conditions("A", white=viewing_conditions("A").white).illuminant == "A"
     assert not found.lamp_made
 
 
@@ -121,12 +122,33 @@ def spectrum(tmp_path: Path, low: int, high: int, step: int = 10, columns: int =
 
 def test_a_light_from_a_file(tmp_path: Path) -> None:
     found = viewing_conditions(spectrum(tmp_path, 380, 780))
-    assert (found.illuminant, found.grid) == ("custom", Grid(380, 780, 41))
+    assert (found.illuminant, found.grid) == ("custom", Grid(380, 780, 81))
     np.testing.assert_allclose(found.white, (1, 1, 1), atol=2e-3)
+    assert found.power.max() == pytest.approx(100)
+
+
+def test_a_coarse_table_is_read_between_its_wavelengths(tmp_path: Path) -> None:
+    """What an observer sees changes within a step."""
+    path = tmp_path / "e.csv"
+    path.write_text("380 2e-60\n580 2e-60\n780 2e-60\n")
+    np.testing.assert_allclose(viewing_conditions(str(path)).white, (1, 1, 1), atol=2e-3)
+
+
+@pytest.mark.parametrize("name", ["2015-2", "2015-10"])
+def test_standard_observers_end_where_they_are_defined_to(name: str) -> None:
+    assert viewing_conditions("D65", name).grid.start == 390
+
+
+def test_another_light_or_observer_leaves_the_rest() -> None:
+    own = viewing_conditions("A", "1964-10")
+    for found in (own.seen_with("A", None), own.seen_with(None, "1964-10")):
+        np.testing.assert_allclose(found.white, own.white, rtol=1e-12)
+    assert own.seen_with("D65", None).observer == "1964-10"
+    assert own.seen_with(None, "1931-2").white == viewing_conditions("A").white
 
 
 def test_a_light_is_cut_to_what_the_observer_sees(tmp_path: Path) -> None:
-    assert viewing_conditions(spectrum(tmp_path, 300, 1000)).grid == Grid(360, 830, 48)
+    assert viewing_conditions(spectrum(tmp_path, 300, 1000)).grid == Grid(360, 830, 95)
 
 
 @pytest.mark.parametrize(
@@ -141,6 +163,9 @@ def test_a_light_is_cut_to_what_the_observer_sees(tmp_path: Path) -> None:
         ({"white": (0.97, -1, 0.484)}, ValueGivenError, "the white's Y is -1"),
         ({"white": (0.97, float("nan"), 0.484)}, ValueGivenError, "three finite numbers"),
         ({"white": (0.0, 1, 0.484)}, ValueGivenError, "not above 0"),
+        ({"white": (1, 1e-320, 1)}, ValueGivenError, "X and Z are near Y"),
+        ({"luminance": 1e-50}, ValueGivenError, "it has to be 1e-06..1e+09 cd/m2"),
+        ({"adaptation": "cat16"}, ValueGivenError, "there is nothing to adapt"),
         ({"white": (10.0, 1, 10.0)}, ValueGivenError, "no lamp has the white 10,1,10"),
         ({"surround": "dimm"}, ValueGivenError, "did you mean 'dim'?"),
         ({"surround": "1,2"}, ValueGivenError, "is no surround"),

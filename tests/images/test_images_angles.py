@@ -12,7 +12,7 @@ import tifffile
 import brdfc
 from brdfc.images.angles import angles_to_tiff
 from brdfc.images.directions import RIGHT, Arrangement, Faced, angles, positions
-from brdfc.source.errors import ImageError
+from brdfc.source.errors import BrdfcError, ImageError
 
 RANDOM = np.random.default_rng(11)
 FLAT = np.array([[0.0, 0.0, 1.0]])
@@ -25,6 +25,28 @@ def unit(v: np.ndarray) -> np.ndarray:
 def write(path: Path, image: np.ndarray) -> Path:
     tifffile.imwrite(path, image, photometric="minisblack", planarconfig="contig")
     return path
+
+
+def test_a_light_on_the_surface_lights_nothing_there() -> None:
+    places = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]])
+    faced = Faced()
+    found = angles(np.repeat(FLAT, 2, axis=0), places, Arrangement((0, 0, 0), (0, 0, 5)), faced)
+    np.testing.assert_allclose(found[:, 0], RIGHT)
+    assert faced.touched == 1
+
+
+def test_what_is_no_number_is_refused(tmp_path: Path) -> None:
+    normals = write(tmp_path / "n.tif", np.tile(FLAT.astype(np.float32), (4, 5, 1)))
+    heights = np.zeros((4, 5), np.float32)
+    heights[2, 3] = np.nan
+    scene = Arrangement((0, 0, 1), (0, 0, 5))
+    bad = tmp_path / "z.tif"
+    tifffile.imwrite(bad, heights, photometric="minisblack")
+    for what in ({"heights": bad}, {"coefficients": bad}):
+        with pytest.raises(ImageError, match="the first at row 2, column 3"):
+            angles_to_tiff(normals, tmp_path / "a.tif", scene, **what)
+    with pytest.raises(BrdfcError, match="would replace an input"):
+        angles_to_tiff(normals, normals, scene)
 
 
 def test_angles_are_those_between_unit_vectors() -> None:

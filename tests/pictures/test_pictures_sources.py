@@ -72,6 +72,8 @@ def profile(tmp_path: Path, name: str, **options: object) -> str:
         {"channels": ["incident", "reflection"]},
         {"channels": ["reflection"]},
         {"encode": "ncolour"},
+        {"encode": "ncolour", "angles": "degrees"},
+        {"encode": "ncolour", "angles": "unit", "set": {"m": 0.2}},
         {"geometry": "full"},
         {"geometry": "full", "channels": ["incident", "incident_azimuth"]},
         {"set": {"m": 0.2}},
@@ -130,6 +132,24 @@ def test_quantities_of_a_sweep() -> None:
         quantity("H")
 
 
+def test_values_of_a_profile_stay_in_its_range(tmp_path: Path) -> None:
+    path = profile(tmp_path, "w")
+    with pytest.raises(ValueGivenError, match=r"ks=-5 lies outside the profile.s range 0\.\.1"):
+        open_subjects([source(f"{path} with ks=-5", {})], None, None, None)
+
+
+def test_angles_stay_in_their_ranges() -> None:
+    subjects = open_subjects([source("ward", {})], None, None, None)
+    with pytest.raises(ValueGivenError, match=r"incident=100deg lies outside .* -90deg\.\.90deg"):
+        sweeps(subjects, [math.radians(100)], ANGLES)
+
+
+def test_measured_points_of_other_incidences_are_missed(tmp_path: Path) -> None:
+    (tmp_path / "m.csv").write_text("# a comment\n\nincident,reflection,Y\n30,10,0.2\n")
+    with pytest.raises(BrdfcError, match="no point at the incidence 45 deg"):
+        measured_sweeps(tmp_path / "m.csv", [math.radians(45)], D50)
+
+
 @pytest.mark.parametrize(
     ("texts", "message"),
     [
@@ -183,9 +203,9 @@ def test_measured_points_by_incidence(tmp_path: Path) -> None:
     [
         ("incident,Y\n30,1\n", "no column 'reflection'; the columns are incident, Y"),
         ("", "no column 'incident'"),
-        ("incident,reflection,Y\n30,10,x\n", "row 2: not all numbers"),
-        ("incident,reflection,Y\n30,10\n", "row 2: not all numbers"),
-        ("incident,reflection,Y\n30,10,nan\n", "row 2: no finite number"),
+        ("incident,reflection,Y\n30,10,x\n", "line 2: not all numbers"),
+        ("incident,reflection,Y\n30,10\n", "line 2: not all numbers"),
+        ("incident,reflection,Y\n30,10,nan\n", "line 2: no finite number"),
     ],
 )
 def test_tables_that_are_none(text: str, message: str, tmp_path: Path) -> None:

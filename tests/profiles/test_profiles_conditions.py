@@ -116,6 +116,23 @@ def test_conditions_are_read_as_they_were_written(
     )
 
 
+def test_a_named_light_with_a_measured_white_is_not_that_light() -> None:
+    """Engines take what is coded as D50 for the standard connection space, whatever its white."""
+    conditions = viewing_conditions("D50", white=(0.97, 1, 0.484))
+    made = brdfc.compile(brdfc.load("lambert"), conditions=conditions, effort=1)
+    stored = made.mvis.tags["svcn"]
+    assert isinstance(stored, SpectralViewingConditions)
+    assert stored.illuminant == 0
+    read = stated_conditions(made.mvis)
+    assert read is not None
+    np.testing.assert_allclose(read.white, (0.97, 1, 0.484), rtol=1e-6)
+    # From another writer it may be so coded, and its white counts.
+    coded = replace(made.mvis, tags={**made.mvis.tags, "svcn": replace(stored, illuminant=1)})
+    read = stated_conditions(coded)
+    assert read is not None
+    np.testing.assert_allclose(read.white, (0.97, 1, 0.484), rtol=1e-6)
+
+
 def test_wavelengths_a_half_float_cannot_hold_are_refused() -> None:
     grid = replace(LIGHTS["A"].grid, start=360.3)
     with pytest.raises(SpectrumError, match=r"360\.3 nm, which the format cannot hold"):
@@ -128,6 +145,8 @@ def test_wavelengths_a_half_float_cannot_hold_are_refused() -> None:
         {"power": (), "illuminant_range": SpectralRange()},
         {"white": (0.0, 0.0, 0.0)},
         {"illuminant_range": SpectralRange(780, 380, 81)},
+        {"illuminant_range": SpectralRange(380, 780, 65535), "power": (1.0,) * 65535},
+        {"power": (0.0,) * 85},
     ],
 )
 def test_conditions_nobody_can_compute_with_are_refused(changes: dict[str, object]) -> None:

@@ -11,13 +11,14 @@ import pytest
 
 import brdfc
 from brdfc.cmm import reference
-from brdfc.cmm.link import run_pipeline
+from brdfc.cmm.transforms import run_pipeline
 from brdfc.colour.conditions import viewing_conditions
 from brdfc.colour.difference import D50
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import NumberArray, Pipeline, Signature, Structure
 from brdfc.icc.validate import validate
 from brdfc.profiles.brdf_structure import REGISTERED
+from brdfc.profiles.metadata import describe
 from brdfc.source.errors import ValueGivenError
 
 needs_reference = pytest.mark.skipif(
@@ -38,6 +39,12 @@ def encoded(radians: np.ndarray, unit: str, low: float, high: float) -> np.ndarr
     if unit == "unit":
         return (radians - low) / (high - low)
     return np.degrees(radians) if unit == "degrees" else radians
+
+
+def test_a_variable_answers_to_its_signature_in_every_layout() -> None:
+    for encode in ("ncolour", "mcs"):
+        by_name = compiled(encode, set={"incident": "40deg"})
+        assert compiled(encode, set={"inci": "40deg"}).mvis.to_bytes() == by_name.mvis.to_bytes()
 
 
 # ---------------------------------------------------------------- n-colour
@@ -102,6 +109,25 @@ def test_a_brdf_function_takes_four_angles(unit: str, tmp_path: Path) -> None:
         angles = [azimuth[0], zenith[0], azimuth[1], zenith[1]]
         device = np.hstack([np.tile(angles, (len(PIXELS), 1)), PIXELS]).astype(np.float32)
         np.testing.assert_allclose(function.apply(device), expected, rtol=5e-4, atol=1e-6)
+
+
+@pytest.mark.parametrize("unit", ["unit", "degrees", "radians"])
+def test_a_coefficient_that_is_an_angle_is_read_as_angles_are(unit: str, tmp_path: Path) -> None:
+    path = tmp_path / "tilted.brdf"
+    path.write_text(
+        'model tilted "T"\nimport geometry (irradiance)\nchannel Rd : XYZ in 0..1 = 0.5 "d"\n'
+        'channel tilt : angle in 0deg..60deg = 30deg "t"\nradiance = irradiance*Rd*cos(tilt)\n'
+    )
+    made = brdfc.compile(
+        brdfc.load(str(path), "full"), encode="brdf-function", angles=unit, effort=1
+    )
+    (_, tilt) = describe(made.mvis, "channel")
+    sample = encoded(np.array(0.5), unit, 0, math.radians(60))
+    assert tilt.origin + tilt.step * sample == pytest.approx(0.5)
+    pixel = np.array([[0.1, 0.2, 0.3, sample]], np.float32)
+    found = brdfc.connect(made.mvis).apply(pixel)[0]
+    lit = np.array([0.1, 0.2, 0.3]) * math.cos(0.5) * math.cos(math.radians(45))
+    np.testing.assert_allclose(found, lit, rtol=1e-5)
 
 
 def test_beside_a_brdf_function_is_an_ordinary_transform(tmp_path: Path) -> None:
@@ -178,6 +204,14 @@ def test_fixed_parameters_are_offsets() -> None:
     np.testing.assert_allclose(found[2::3], [0.25] * 3, rtol=1e-6)
 
 
+def test_a_highlight_has_the_lights_colour_where_nothing_else_has_one() -> None:
+    made = compiled("brdf-struct", set={"Rd": (0.5, 0.5, 0.5)})
+    found = parameters(made, np.array([0.05, 0.15], np.float32))
+    np.testing.assert_allclose(found[1::3], [0.05 * w for w in D50], rtol=1e-6)
+    grey = compiled("brdf-struct", set={"Rd": (0.5, 0.5, 0.5)}, highlight="equal")
+    assert members(grey)["func"] == Signature("mono")
+
+
 def test_a_structure_of_wavelengths() -> None:
     made = compiled("brdf-struct", spectral="400nm..700nm,50nm")
     pixel = np.array([*np.linspace(0.1, 0.7, 7), 0.05, 0.15], np.float32)
@@ -232,6 +266,13 @@ def test_a_brdf_function_needs_directions_in_space() -> None:
 def test_only_registered_models_have_a_structure() -> None:
     with pytest.raises(ValueGivenError, match="'ggx' has no registered BRDF type"):
         compiled("brdf-struct", "ggx")
+
+
+def test_a_model_that_has_a_registered_ones_name_is_not_that_model(tmp_path: Path) -> None:
+    path = tmp_path / "ward.brdf"
+    path.write_text('model ward "W"\nchannel Rd : XYZ in 0..1 = 0.5 "d"\nradiance = Rd\n')
+    with pytest.raises(ValueGivenError, match="has no registered BRDF type"):
+        brdfc.compile(brdfc.load(str(path)), encode="brdf-struct", effort=1)
 
 
 def test_a_single_profile_has_no_mid(tmp_path: Path) -> None:
