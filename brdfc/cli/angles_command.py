@@ -1,9 +1,10 @@
 from __future__ import annotations
 
 import math
-import sys
 
 import click
+
+from brdfc.cli.options import row_progress
 
 
 @click.command("angles")
@@ -63,15 +64,7 @@ def command(
         raise click.UsageError(f"--width takes a number above 0, not {width:g}")
     light_at = _vector(light, "--light", distant)
     scene = Arrangement(light_at, _vector(camera, "--camera", distant), geometry, distant, width)
-    shown = 0
-
-    def progress(done: int, total: int) -> None:
-        nonlocal shown
-        if sys.stderr.isatty() and 100 * done // total != shown:
-            shown = 100 * done // total
-            click.echo(f"\r{shown:3d} %", nl=done == total, err=True)
-
-    faced = angles_to_tiff(normals, output, scene, heights, coefficients, progress)
+    faced = angles_to_tiff(normals, output, scene, heights, coefficients, row_progress())
     for count, what in ((faced.from_light, "light"), (faced.from_camera, "camera")):
         if count:
             click.echo(f"note: {count:,} pixels face away from the {what}: 90 degrees", err=True)

@@ -1,12 +1,11 @@
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 import click
 
 from brdfc.cli.colour_options import rendered, rendering_options
-from brdfc.cli.options import environment_option, warn_of_defaults
+from brdfc.cli.options import environment_option, row_progress, warn_of_defaults
 
 
 @click.command("apply")
@@ -37,16 +36,8 @@ def command(files: tuple[str, ...], output: str, environment: tuple[str, ...], *
     refuse_same([output], files)
     chosen = rendered(profiles, environment, **how)
     warn_of_defaults(chosen.link)
-    shown = 0
-
-    def progress(done: int, total: int) -> None:
-        nonlocal shown
-        if sys.stderr.isatty() and 100 * done // total != shown:
-            shown = 100 * done // total
-            click.echo(f"\r{shown:3d} %", nl=done == total, err=True)
-
     run = ", ".join(environment) or "default angles"
-    applied = apply_to_tiff(chosen, image, output, run, progress)
+    applied = apply_to_tiff(chosen, image, output, run, row_progress())
     for name, count in applied.outside.items():
         click.echo(
             f"note: {count:,} samples of '{name}' lie outside the range the model declares; "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -50,6 +51,19 @@ def whole_number(least: int, most: int) -> Callable[[click.Context, click.Parame
         return int(value)
 
     return parsed
+
+
+def row_progress() -> Callable[[int, int], None]:
+    """Shows how much of an image is done, in percent, on a terminal's standard error."""
+    shown = 0
+
+    def progress(done: int, total: int) -> None:
+        nonlocal shown
+        if sys.stderr.isatty() and 100 * done // total != shown:
+            shown = 100 * done // total
+            click.echo(f"\r{shown:3d} %", nl=done == total, err=True)
+
+    return progress
 
 
 def environment_option(function: Callable[..., Any]) -> Callable[..., Any]:
