@@ -31,12 +31,13 @@ from brdfc.calc.program import Program
 from brdfc.calc.text import assemble
 from brdfc.cmm import reference
 from brdfc.colour.difference import ciede2000
-from brdfc.compiler import compile_model, explore_model, prepare
+from brdfc.compiler import compile_model, explore_model
 from brdfc.engine.interpreter import run
 from brdfc.judge.measure import SEEN
 from brdfc.judge.strata import Points, points
 from brdfc.lang.load import load
 from brdfc.lang.model import Model, Quantity
+from brdfc.prepared import prepare
 from brdfc.profiles.content import Content
 from brdfc.profiles.multiplex import profile_pair
 from brdfc.symbolic.evaluate import evaluate

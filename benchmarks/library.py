@@ -20,11 +20,13 @@ import numpy as np
 import brdfc
 from brdfc.cmm import reference
 from brdfc.colour.colorimetry import XYZ_UNDER_D50
-from brdfc.compiler import Compiled, compile_model, problem_of
+from brdfc.compiled import Compiled
+from brdfc.compiler import compile_model
 from brdfc.judge.rival import subject
 from brdfc.judge.stability import count_failures
 from brdfc.judge.strata import inside
 from brdfc.lang.load import library
+from brdfc.prepared import problem_of
 from brdfc.symbolic.evaluate import evaluate
 
 RUNS, PIXELS = 100, 100

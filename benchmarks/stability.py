@@ -19,11 +19,12 @@ import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from brdfc.compiler import compile_model, problem_of
+from brdfc.compiler import compile_model
 from brdfc.judge.failures import Counted, Row, overall
 from brdfc.judge.rival import as_written, subject
 from brdfc.judge.stability import COUNTED, JUDGED, count_failures, judge_strata
 from brdfc.lang.load import library, load, textbook_form
+from brdfc.prepared import problem_of
 
 COMPILED, TEXTBOOK = "compiled", "as written"
 GEOMETRIES = ("plane", "full")

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from brdfc.cmm.rendering import rendering as rendering
     from brdfc.colour.conditions import ViewingConditions as ViewingConditions
     from brdfc.colour.conditions import viewing_conditions as viewing_conditions
-    from brdfc.compiler import Compiled as Compiled
+    from brdfc.compiled import Compiled as Compiled
     from brdfc.compiler import compile_model as compile  # noqa: F401
     from brdfc.icc.profile import Profile as Profile
     from brdfc.lang.load import load as load
@@ -34,7 +34,7 @@ __version__ = "0.1.0"
 # Imported when first used: `brdfc --help` must not wait for NumPy and SymPy.
 _PLACES = {
     "BrdfcError": ("brdfc.source.errors", "BrdfcError"),
-    "Compiled": ("brdfc.compiler", "Compiled"),
+    "Compiled": ("brdfc.compiled", "Compiled"),
     "Link": ("brdfc.cmm.link", "Link"),
     "Rendering": ("brdfc.cmm.rendering", "Rendering"),
     "ViewingConditions": ("brdfc.colour.conditions", "ViewingConditions"),

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from brdfc.calc.price import operations, price
 from brdfc.calc.program import Program
 from brdfc.charts.points import AS_WRITTEN, Point
-from brdfc.compiler import Compiled, prepare, problem_of
+from brdfc.compiled import Compiled
 from brdfc.encodings import Encoding, encoded
 from brdfc.engine.interpreter import run
 from brdfc.judge.bound import error_bound
@@ -27,6 +27,7 @@ from brdfc.judge.measure import Judge, Measured
 from brdfc.judge.problem import Problem
 from brdfc.judge.strata import MANY, points
 from brdfc.lang.model import Model
+from brdfc.prepared import prepare, problem_of
 from brdfc.roles import Roles, Value
 from brdfc.source.errors import BrdfcError, ValueGivenError
 from brdfc.symbolic.expression import Expression

@@ -3,94 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
 
 from brdfc import __version__
 from brdfc.calc.price import operations, price
 from brdfc.calc.prices import prices_in_use
 from brdfc.calc.program import Program
-from brdfc.calc.text import disassemble
-from brdfc.colour.colorimetry import XYZ_UNDER_D50, Colorimetry
 from brdfc.colour.conditions import ViewingConditions
-from brdfc.colours import bands, colours_of
+from brdfc.colours import colours_of
+from brdfc.compiled import Compiled
 from brdfc.encodings import Encoding, encoded, encoding
-from brdfc.files import write_all
-from brdfc.icc.profile import Profile
 from brdfc.icc.types import Dictionary
-from brdfc.judge.cache import Remembered, holds, key, note, recall, remember, steps_text, summary
-from brdfc.judge.examples import check_examples, examples_digest
+from brdfc.judge.cache import Remembered, key, recall, remember, steps_text, summary
 from brdfc.judge.explore import Explored, explore
 from brdfc.judge.goals import Goal, goal
 from brdfc.judge.problem import Problem
 from brdfc.judge.samples import sample
-from brdfc.judge.selfcheck import LIMIT, Verdict, self_check
+from brdfc.judge.selfcheck import LIMIT, Verdict, check_finite, self_check
 from brdfc.lang.model import Model, Quantity
-from brdfc.layouts import Layout, device_quantities, layout, pixel_quantities, profiles
+from brdfc.layouts import device_quantities, layout, pixel_quantities, profiles
+from brdfc.prepared import prepare, problem_of
 from brdfc.profiles.content import Content
 from brdfc.profiles.metadata import metadata, value_text
-from brdfc.profiles.multiplex import ProfilePair
-from brdfc.roles import Roles, Value, assign_roles
+from brdfc.roles import Roles, Value
+from brdfc.sceneplan import plan_for
+from brdfc.scenes.scene import Scene
 from brdfc.source.errors import BrdfcError, SelfCheckError, ValueGivenError
-from brdfc.symbolic.formula import NO_WHITE, Formula, formula
-from brdfc.symbolic.guards import Guard, guarded
+from brdfc.symbolic.guards import guarded
 
 Progress = Callable[[int, int], None]
 
 
 def _silent(_done: int, _total: int) -> None:
     """No progress shown."""
-
-
-@dataclass(frozen=True)
-class Compiled:
-    """A compiled model: its profiles, and everything worth knowing of how they came about.
-
-    form: the form that was chosen and how it was derived; None where every form failed to be
-    measured, and the formula stands as written. guards: what its domain made necessary. price:
-    nanoseconds a pixel on the reference engine, by the price table.
-    """
-
-    model: Model
-    roles: Roles
-    formula: Formula
-    goal: Goal
-    form: Remembered | None
-    guards: tuple[Guard, ...]
-    program: Program
-    price: float
-    verdict: Verdict
-    layout: Layout
-    profiles: tuple[Profile, ...]
-
-    @property
-    def mid(self) -> Profile:
-        """The profile that takes device values: the MID, or the only one."""
-        return self.profiles[0]
-
-    @property
-    def mvis(self) -> Profile:
-        """The profile that gives colours: the MVIS, or the only one."""
-        return self.profiles[-1]
-
-    @property
-    def text(self) -> str:
-        """The calculator text of the program."""
-        return disassemble(self.program.body)
-
-    def files(self, path: str | Path, mid: str | Path | None = None) -> list[tuple[Path, bytes]]:
-        """Path and bytes of each profile, the MID first; beside the MVIS unless said where."""
-        if len(self.profiles) == 2:
-            return ProfilePair(self.mid, self.mvis).files(path, mid)
-        if mid is not None:
-            raise ValueGivenError(f"'{self.layout.name}' has one profile and no MID")
-        return [(Path(path), self.mvis.to_bytes())]
-
-    def save(self, path: str | Path, mid: str | Path | None = None) -> tuple[Path, ...]:
-        """Write the profiles, all or none; see files. Returns their paths."""
-        files = self.files(path, mid)
-        write_all(*files)
-        return tuple(place for place, _ in files)
 
 
 def compile_model(
@@ -102,6 +46,7 @@ def compile_model(
     max_error: str | None = None,
     effort: int | None = None,
     encode: str = "calc",
+    scene: Scene | None = None,
     conditions: ViewingConditions | None = None,
     highlight: str | None = None,
     angles: str | None = None,
@@ -118,45 +63,63 @@ def compile_model(
     formula as it is written. encode: "calc", or with every variable fixed "clut:17" (a lookup
     table) or "curve:1024" (a calculator with sampled curves); and a layout: "mcs" (the usual MID
     and MVIS), "ncolour", "brdf-function" or "brdf-struct", see layouts.py, where angles and
-    parameters are explained too. conditions: the light and the
-    observer of the model's colours (None: D50, and the profile says no more). highlight: "light",
-    where a highlight without colour has the light's, or "equal", where it adds the same to X, Y
-    and Z (None: as the model says, most say the light's). cache: use and keep searches on
-    disk. progress gets forms measured and the effort.
+    parameters are explained too. scene: that the profiles are for: what cannot be seen in it is
+    left out, and its light and tolerance count (then neither optimize nor max_error is given).
+    conditions: the light and the observer of the model's colours (None: D50, and the profile says
+    no more). highlight: "light", where a highlight without colour has the light's, or "equal",
+    where it adds the same to X, Y and Z (None: as the model says, most say the light's). cache: use
+    and keep searches on disk. progress gets forms measured and the effort.
 
-    Raises ModelError, ValueGivenError, or SelfCheckError when the program does not agree with the
-    model.
+    Raises ModelError, ValueGivenError, SceneError, or SelfCheckError when the program does not
+    agree with the model.
     """
     aim, how = goal(optimize, max_error), encoding(encode)
     arrangement = layout(how.layout, model, angles, parameters)
+    if scene is not None:
+        _refuse_beside(scene, how, optimize, max_error)
+        conditions = scene.conditions if conditions is None else conditions
+        highlight = scene.highlight if highlight is None else highlight
+    colours = colours_of(model, conditions, highlight)
     fixed = set or {}
     named = {q.name for name in fixed if (q := model.quantity(name)) is not None}
     pixel = (*channels, *(n for n in pixel_quantities(arrangement, model) if n not in named))
-    colours = colours_of(model, conditions, highlight)
-    roles, ready = prepare(model, fixed, pixel, cache, colours.formula_white)
-    problem = problem_of(roles, ready, colours.colorimetry)
+    planned = None
+    if scene is not None:
+        planned = plan_for(model, scene, fixed, pixel, colours, cache)
+        ready, roles, problem = planned.ready, planned.roles, planned.problem
+        aim, limit, samples = planned.goal, scene.tolerance, planned.inside
+    else:
+        roles, ready = prepare(model, fixed, pixel, cache, colours.formula_white)
+        problem = problem_of(roles, ready, colours.colorimetry)
+        limit = max(LIMIT, aim.limit if aim.kind == "de" else 0.0)
+        samples = sample(ready.domain, roles.channels, roles.variables)
     form = _search(problem, aim, effort, cache, progress)
     if form is not None and how.kind == "calc":
         program, guards = form.program, form.guards
         cost = form.derivation[-1].price
     else:
-        safe, guards = guarded(form.expression if form else ready.simple, problem.ranges)
+        start = form.expression if form else problem.start
+        safe, guards = guarded(start, problem.safe_ranges)
         program = encoded(how, problem, safe)
         cost = price(program)
-    samples = sample(ready.domain, roles.channels, roles.variables)
-    limit = max(LIMIT, aim.limit if aim.kind == "de" else 0.0)
     try:
         verdict = self_check(
             program, ready.exact, problem.bindings, samples, limit, colours.colorimetry
         )
     except SelfCheckError as error:
+        if planned is not None:
+            raise planned.unreachable(error, form) from None
         if how.kind == "calc":
             raise
         hint = "take more points, or allow more with --max-error 0.1dE"
         raise SelfCheckError(error.message, hint=hint) from None
     stated = {**colours.facts(), **arrangement.facts()}
+    if planned is not None:
+        check_finite(program, problem.bindings, planned.outside, "the model's own ranges")
+        stated |= planned.facts()
     own = device_quantities(arrangement, roles)
-    meta = _metadata(model, roles, own, stated, program, cost, verdict, form, limit, how)
+    unread = planned.unread if planned is not None else ()
+    meta = _metadata(model, roles, own, stated, program, cost, verdict, form, limit, how, unread)
     content = Content(
         model.title,
         program,
@@ -168,8 +131,19 @@ def compile_model(
     )
     made = profiles(arrangement, model, roles, content, colours)
     return Compiled(
-        model, roles, ready, aim, form, guards, program, cost, verdict, arrangement, made
+        model, roles, ready, aim, form, guards, program, cost, verdict, arrangement, made, planned
     )
+
+
+def _refuse_beside(scene: Scene, how: Encoding, optimize: str, max_error: str | None) -> None:
+    """What a scene leaves no choice about."""
+    if optimize != "balanced" or max_error is not None:
+        raise ValueGivenError(
+            "how exact the program has to be is said by the scene",
+            hint=f"tolerance = {scene.tolerance:g} in {scene.path}",
+        )
+    if how.layout != "mcs":
+        raise ValueGivenError(f"a scene is compiled to a MID and an MVIS, not to '{how.layout}'")
 
 
 def explore_model(
@@ -201,46 +175,6 @@ def explore_model(
     return found
 
 
-def prepare(
-    model: Model,
-    set: Mapping[str, Value],
-    channels: Iterable[str],
-    cache: bool = False,
-    white: Sequence[float] = NO_WHITE,
-) -> tuple[Roles, Formula]:
-    """The roles of the quantities, and the formula with its constants in, examples checked.
-
-    cache: examples that held before, of the same formula, are not evaluated again. white: that the
-    model's colours are under (see symbolic/white.py).
-    """
-    roles = assign_roles(model, set, channels, white)
-    if not roles.channels:
-        raise ValueGivenError(
-            "no channel is left: a profile needs one value a pixel at least",
-            hint="leave one quantity out of --set",
-        )
-    name = examples_digest(model)
-    if not (cache and holds(name)):
-        check_examples(model)
-        if cache:
-            note(name)
-    ready = formula(model, roles.constants, white)
-    needed = bands(model)
-    if ready.width != needed:
-        raise BrdfcError(
-            f"the radiance of '{model.name}' has {ready.width} components; {needed} are needed",
-            where=str(model.radiance.span),
-            hint="a colourless radiance y is written (y, y, y)" if ready.width == 1 else None,
-        )
-    return roles, ready
-
-
-def problem_of(roles: Roles, ready: Formula, colorimetry: Colorimetry = XYZ_UNDER_D50) -> Problem:
-    """What a search for forms needs to know."""
-    quantities, count = roles.channels + roles.variables, len(roles.channel_names)
-    return Problem(ready, quantities, roles.bindings(), count, colorimetry)
-
-
 def _search(
     problem: Problem, aim: Goal, effort: int | None, cache: bool, progress: Progress
 ) -> Remembered | None:
@@ -268,6 +202,7 @@ def _metadata(
     form: Remembered | None,
     limit: float,
     how: Encoding,
+    unread: Sequence[Quantity],
 ) -> Dictionary:
     types = {q.name: q.type for q in model.quantities}
     constants = {n: value_text(v, types[n]) for n, v in roles.constants.items()}
@@ -287,4 +222,4 @@ def _metadata(
         facts["form.error"] = (
             f"{last.bits:.1f} bits, CIEDE2000 {last.de:.0e} at worst of {form.points} points"
         )
-    return metadata(model, channels, roles.variables, constants, facts)
+    return metadata(model, channels, roles.variables, constants, facts, unread)

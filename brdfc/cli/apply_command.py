@@ -5,13 +5,14 @@ from typing import Any
 import click
 
 from brdfc.cli.colour_options import rendered, rendering_options
-from brdfc.cli.options import environment_option, row_progress, warn_of_defaults
+from brdfc.cli.options import environment_option, extrapolate_option, row_progress, warn_of_defaults
 
 
 @click.command("apply")
 @click.argument("files", nargs=-1, required=True, metavar="PROFILE... IMAGE")
 @click.option("-o", "output", required=True, metavar="OUT.tif", help="The image to write.")
 @environment_option
+@extrapolate_option
 @rendering_options
 def command(files: tuple[str, ...], output: str, environment: tuple[str, ...], **how: Any) -> None:
     """Evaluate IMAGE, a float32 TIFF of coefficients, through a MID and an MVIS, or through one

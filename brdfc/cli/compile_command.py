@@ -10,7 +10,9 @@ from brdfc.cli.options import geometry_option, pairs
 from brdfc.cli.search_options import end_progress, search_options, shown_progress
 
 if TYPE_CHECKING:
-    from brdfc.compiler import Compiled
+    from brdfc.compiled import Compiled
+    from brdfc.sceneplan import Plan
+    from brdfc.scenes.scene import Scene
 
 
 @click.command("compile")
@@ -72,6 +74,18 @@ if TYPE_CHECKING:
 )
 @geometry_option
 @search_options
+@click.option(
+    "--scene",
+    metavar="FILE",
+    help="Compile for a scene (scene.toml): what cannot be seen in it is left out. Its ranges, "
+    "light and tolerance count.",
+)
+@click.option(
+    "--tolerance",
+    type=float,
+    metavar="dE",
+    help="CIEDE2000 that the scene's profile may be off, in place of what the scene says.",
+)
 @click.option("--explain", is_flag=True, help="Show how the chosen form was derived.")
 @click.option("--no-cache", is_flag=True, help="Search anew, and keep nothing.")
 def command(
@@ -90,6 +104,8 @@ def command(
     optimize: str,
     max_error: str | None,
     effort: int | None,
+    scene: str | None,
+    tolerance: float | None,
     explain: bool,
     no_cache: bool,
     **viewing: Any,
@@ -108,6 +124,7 @@ def command(
       brdfc compile ward -o exact_mvis.icc --optimize accuracy --explain
       brdfc compile ward -o lamp_mvis.icc --white 0.97,1,0.484
       brdfc compile ward -o angles.icc --encode ncolour
+      brdfc compile ward -o scene_mvis.icc --scene scene.toml
       brdfc compile ward -o spectral_mvis.icc --spectral 400nm..700nm,10nm --illuminant A
     """
     from brdfc.calc.price import operations
@@ -115,6 +132,9 @@ def command(
     from brdfc.files import refuse_same, write_all
     from brdfc.lang.load import load
 
+    wanted = _scene(scene, tolerance)
+    if geometry is None and wanted is not None:
+        geometry = wanted.geometry
     if geometry is None and "brdf-function" in encode:
         geometry = "full"  # which is what it takes
     conditions = stated_viewing(**viewing)
@@ -126,6 +146,7 @@ def command(
         max_error=max_error,
         effort=effort,
         encode=encode,
+        scene=wanted,
         conditions=conditions,
         highlight=highlight,
         angles=angles,
@@ -152,6 +173,8 @@ def command(
     )
     if compiled.form is not None:
         _show_form(compiled, explain)
+    if compiled.plan is not None:
+        _show_scene(compiled.plan, explain)
     for guard in compiled.guards:
         click.echo(f"guard        {guard.reason}, in {_short(guard.operation)}")
     click.echo(
@@ -160,6 +183,51 @@ def command(
     )
     for path, _ in files:
         click.echo(f"wrote        {path}")
+
+
+def _scene(path: str | None, tolerance: float | None) -> Scene | None:
+    from dataclasses import replace
+
+    from brdfc.scenes.scene import checked_tolerance, read_scene
+
+    if path is None:
+        if tolerance is not None:
+            raise click.UsageError("--tolerance is a scene's: give --scene, or --max-error")
+        return None
+    scene = read_scene(path)
+    if tolerance is None:
+        return scene
+    return replace(scene, tolerance=checked_tolerance(tolerance, "--tolerance"))
+
+
+def _show_scene(plan: Plan, explain: bool) -> None:
+    found, lean = plan.narrowed.measured, plan.fitted.lean
+    if found is not None:
+        click.echo(f"image        {found.pixels:,} pixels")
+        for name, ends, middle in zip(found.names, found.ends, found.percentiles, strict=True):
+            click.echo(
+                f"             {name}: {ends[0]:.6g}..{ends[1]:.6g}, but for the outermost 1 % "
+                f"{middle[0]:.6g}..{middle[1]:.6g}"
+            )
+        for name in found.stretched:
+            click.echo(
+                f"note: few pixels stretch the range of '{name}'; a share of pixels that may be "
+                "off (share = 0.001) would leave them out",
+                err=True,
+            )
+        if found.outside:
+            click.echo(f"             {found.outside:,} pixels lie outside what is kept to")
+    click.echo(f"scene        CIEDE2000 within {plan.scene.tolerance:g} for {plan.scene.output}")
+    for line in plan.ledger():
+        click.echo(f"left out     {line}")
+    if lean.omissions:
+        click.echo(f"together     {plan.said(lean.bound)}")
+    for kept in lean.kept[: None if explain else _KEPT]:
+        click.echo(f"kept         {kept.words}: {kept.why}; would save {kept.saved:.0f} ns")
+
+
+_KEPT = 3
+"""Lines on what was kept for want of a proof; --explain shows all."""
 
 
 def _show_form(compiled: Compiled, explain: bool) -> None:

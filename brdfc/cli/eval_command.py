@@ -6,12 +6,13 @@ from typing import Any
 import click
 
 from brdfc.cli.colour_options import rendered, rendering_options
-from brdfc.cli.options import environment_option, warn_of_defaults
+from brdfc.cli.options import environment_option, extrapolate_option, warn_of_defaults
 
 
 @click.command("eval")
 @click.argument("profiles", nargs=-1, required=True, metavar="PROFILE...")
 @environment_option
+@extrapolate_option
 @rendering_options
 @click.option(
     "--pixel",

@@ -77,8 +77,20 @@ def environment_option(function: Callable[..., Any]) -> Callable[..., Any]:
     )(function)
 
 
+def extrapolate_option(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The --extrapolate option of commands that run profiles."""
+    return click.option(
+        "--extrapolate",
+        is_flag=True,
+        help="Take variables outside the ranges that the profile was compiled for.",
+    )(function)
+
+
 def connected(
-    profiles: Sequence[str], environment: Iterable[str], transform: str | None = None
+    profiles: Sequence[str],
+    environment: Iterable[str],
+    transform: str | None = None,
+    extrapolate: bool = False,
 ) -> Link:
     """Profiles linked, variables read in the units that the last declares.
 
@@ -105,7 +117,7 @@ def connected(
         # A foreign profile does not say what its variables are; the unit the user writes does.
         declared = types.get(name) or TYPES["angle" if text[-3:] in ("deg", "rad") else "number"]
         values[name] = parse_value(text, declared, name)[0]
-    return connect(*loaded, env=values, transform=transform)
+    return connect(*loaded, env=values, transform=transform, extrapolate=extrapolate)
 
 
 def warn_of_defaults(link: Link) -> None:

@@ -63,12 +63,13 @@ def command(
 
     from brdfc.charts.draw import chart_kind
     from brdfc.charts.stability import Report, draw_report
-    from brdfc.compiler import compile_model, problem_of
+    from brdfc.compiler import compile_model
     from brdfc.judge.error_map import error_map
     from brdfc.judge.failures import overall
     from brdfc.judge.rival import as_written, subject
     from brdfc.judge.stability import count_failures, judge_strata
     from brdfc.lang.load import load, textbook_form
+    from brdfc.prepared import problem_of
 
     kind = chart_kind(output)  # a report that cannot be written is refused before the search
     loaded = load(model, geometry)

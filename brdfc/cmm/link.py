@@ -8,7 +8,6 @@ angles among its channels, needs no other.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from brdfc.cmm.environment import environment_of
 from brdfc.cmm.transforms import (
     Values,
     check_colours,
@@ -25,11 +25,10 @@ from brdfc.cmm.transforms import (
     transform_variables,
 )
 from brdfc.icc.profile import Profile
-from brdfc.icc.types import NumberArray, Pipeline, Utf8Array
+from brdfc.icc.types import Dictionary, NumberArray, Pipeline, Utf8Array
 from brdfc.profiles.brdf_function import ANGLES
-from brdfc.profiles.metadata import Described, describe, value_text
-from brdfc.source.diagnostics import did_you_mean
-from brdfc.source.errors import LinkError, ValueGivenError
+from brdfc.profiles.metadata import Described, describe
+from brdfc.source.errors import LinkError
 
 ProfileOrPath = Profile | str | Path
 
@@ -61,7 +60,8 @@ class Link:
     channels: the names of the samples of a pixel. profile: the last, in whose connection space the
     values are; transform: the tag that leads there. defaulted: the names of the channels that take
     their default. environment: variables by signature, see engine.interpreter.run. described: what
-    the first says of its channels.
+    the first says of its channels. samples: the names of an image's samples, where the profile was
+    compiled for one and takes only some of them.
     """
 
     channels: tuple[str, ...]
@@ -71,6 +71,7 @@ class Link:
     defaulted: tuple[str, ...]
     environment: Mapping[str, ArrayLike]
     described: tuple[Described, ...]
+    samples: tuple[str, ...] = ()
 
     @property
     def outputs(self) -> int:
@@ -98,27 +99,35 @@ def connect(
     *profiles: ProfileOrPath,
     env: Mapping[str, float] | None = None,
     transform: str | None = None,
+    extrapolate: bool = False,
 ) -> Link:
     """Connect a MID to an MVIS, or make ready a single profile of device values.
 
     env: variables of the run, by the model's name or by four-letter signature, in radians for
     angles. transform: the tag of the last profile to use: "M2B0" (the usual one) or "M2S0" of an
-    MVIS, "A2B1" or "bAB0" of a profile of device values.
+    MVIS, "A2B1" or "bAB0" of a profile of device values. extrapolate: take variables outside the
+    ranges that the profile states too.
     Raises ProfileError for what is no profile, LinkError for profiles that do not connect,
     ValueGivenError for variables that do not exist or are outside their range.
     """
     loaded = [_profile(p) for p in profiles]
     if len(loaded) == 1:
-        return _single(loaded[0], env or {}, transform)
+        return _single(loaded[0], env or {}, transform, extrapolate)
     if len(loaded) != 2:
         raise LinkError(
             f"{len(loaded)} profiles do not connect",
             hint="give a MID and an MVIS, or one profile of device values",
         )
-    return _pair(loaded[0], loaded[1], env or {}, transform or "M2B0")
+    return _pair(loaded[0], loaded[1], env or {}, transform or "M2B0", extrapolate)
 
 
-def _pair(source: Profile, destination: Profile, env: Mapping[str, float], transform: str) -> Link:
+def _pair(
+    source: Profile,
+    destination: Profile,
+    env: Mapping[str, float],
+    transform: str,
+    extrapolate: bool,
+) -> Link:
     _check_class(source, "mid ", "first", "a MID")
     _check_class(destination, "mvis", "second", "an MVIS")
     first, second = pipeline(source, "A2M0"), pipeline(destination, transform)
@@ -142,12 +151,15 @@ def _pair(source: Profile, destination: Profile, env: Mapping[str, float], trans
         destination,
         transform,
         tuple(n for n, index in zip(wanted, sources, strict=True) if index is None),
-        _environment(destination, transform, env),
+        environment_of(destination, transform, env, extrapolate),
         describe(source, "channel"),
+        scene_samples(source),
     )
 
 
-def _single(profile: Profile, env: Mapping[str, float], transform: str | None) -> Link:
+def _single(
+    profile: Profile, env: Mapping[str, float], transform: str | None, extrapolate: bool = False
+) -> Link:
     found = transform or device_transform(profile)
     only = pipeline(profile, found)
     check_colours(profile, found, only.outputs)
@@ -158,7 +170,7 @@ def _single(profile: Profile, env: Mapping[str, float], transform: str | None) -
         names, described = (*ANGLES, *names), ()
     if len(names) != only.inputs:
         names, described = tuple(map(str, range(only.inputs))), ()
-    environment = _environment(profile, found, env)
+    environment = environment_of(profile, found, env, extrapolate)
     return Link(names, (only,), profile, found, (), environment, described)
 
 
@@ -171,7 +183,7 @@ def connect_alone(profile: Profile, env: Mapping[str, float] | None = None) -> L
     check_colours(profile, "M2B0", only.outputs)
     if len(names) != only.inputs:
         raise LinkError("the channel names ('mcta') do not match the transform's channels")
-    environment = _environment(profile, "M2B0", env or {})
+    environment = environment_of(profile, "M2B0", env or {})
     described = describe(profile, "channel")
     return Link(names, (only,), profile, "M2B0", (), environment, described)
 
@@ -189,43 +201,18 @@ def channel_defaults(link: Link) -> tuple[float, ...]:
     return tuple(known.get(name, 0.0) for name in link.channels)
 
 
+def scene_samples(profile: Profile) -> tuple[str, ...]:
+    """The names of the samples of images that a profile for a scene was compiled for; none where
+    it does not say."""
+    meta = profile.tags.get("meta")
+    return tuple((meta.get("scene.samples") or "").split()) if isinstance(meta, Dictionary) else ()
+
+
 def variable_names(link: Link) -> dict[str, str]:
     """The signature of every variable a link's transform reads, by the model's name for it, or by
     the signature where the profile does not say."""
     known = transform_variables(link.profile, link.transform)
     return {(d.name if d else s): s for s, d in known}
-
-
-def _environment(profile: Profile, transform: str, given: Mapping[str, float]) -> dict[str, float]:
-    """Values by signature for a run; by name or signature in what is given."""
-    known = transform_variables(profile, transform)
-    by_name = {name: (s, d) for s, d in known for name in ((s, d.name) if d else (s,))}
-    environment = {}
-    for name, value in given.items():
-        if name not in by_name:
-            listed = ", ".join(d.name if d else s for s, d in known) or "none"
-            raise ValueGivenError(
-                f"the profile has no variable '{name}'",
-                hint=did_you_mean(name, by_name) or f"its variables: {listed}",
-            )
-        signature, described = by_name[name]
-        if signature in environment:
-            raise ValueGivenError(f"'{name}' is given twice, by name and by signature")
-        environment[signature] = _in_range(name, value, described)
-    return environment
-
-
-def _in_range(name: str, value: float, described: Described | None) -> float:
-    """A variable's value as float32 has it; ValueGivenError where the model does not reach."""
-    if not math.isfinite(value):
-        raise ValueGivenError(f"{name}={value} is not a finite number")
-    rounded = float(np.float32(value))
-    if described and not np.float32(described.low) <= rounded <= np.float32(described.high):
-        shown = value_text((value,), described.type)
-        raise ValueGivenError(
-            f"{name}={shown} lies outside the profile's range {described.range_text}"
-        )
-    return rounded
 
 
 def _profile(given: ProfileOrPath) -> Profile:

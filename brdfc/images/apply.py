@@ -45,7 +45,8 @@ def apply_to_tiff(
     refuse_same([target], [source])
     with open_coefficients(source) as image:
         names = link.channels
-        if image.channels != len(names):
+        columns = _columns(link, image.channels)
+        if columns is None:
             raise ImageError(
                 f"the image has {image.channels} samples a pixel, the profile takes {len(names)}: "
                 f"{', '.join(names)}",
@@ -57,7 +58,8 @@ def apply_to_tiff(
 
         def bands() -> Iterator[NDArray[Any]]:
             top = 0
-            for band in image.bands():
+            for whole in image.bands():
+                band = whole if columns == _ALL else whole[..., columns]
                 faults.count(band, top)
                 _count_outside(link, band, applied)
                 if faults.total:  # the rest is only counted: nothing will be written
@@ -80,6 +82,18 @@ def apply_to_tiff(
         shape = (image.height, image.width, rendering.samples)
         write_colours(target, shape, bands(), f"{_NAMES[rendering.to]}; {_said(rendering, run)}")
     return applied
+
+
+_ALL = slice(None)
+
+
+def _columns(link: Link, count: int) -> slice | list[int] | None:
+    """The samples of an image that a link takes: all, or those it was compiled to need of it."""
+    if count == len(link.channels):
+        return _ALL
+    if count != len(link.samples) or not set(link.channels) <= set(link.samples):
+        return None
+    return [link.samples.index(name) for name in link.channels]
 
 
 _NAMES = {

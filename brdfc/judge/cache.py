@@ -28,7 +28,6 @@ from brdfc.judge.problem import Problem
 from brdfc.source.errors import BrdfcError
 from brdfc.symbolic.expression import Expression, walk
 from brdfc.symbolic.guards import Guard, guarded
-from brdfc.symbolic.ranges import Ranges
 from brdfc.symbolic.serial import from_data, to_data
 
 _LIMIT = 1 << 20
@@ -65,7 +64,7 @@ def summary(problem: Problem, explored: Explored) -> Remembered:
     """What of a search is worth keeping."""
     chosen = explored.chosen
     assert chosen.program is not None
-    guards = guarded(chosen.form.expression, Ranges(problem.ranges.domain))[1]
+    guards = guarded(chosen.form.expression, problem.safe_ranges)[1]
     derivation = tuple(
         Derived(
             c.form.step.rule if c.form.step else "",
@@ -90,6 +89,7 @@ def summary(problem: Problem, explored: Explored) -> Remembered:
 def key(problem: Problem, goal: Goal, effort: int | None) -> str:
     """A digest of all that a search depends on; effort is None for the default."""
     domain = [[name, i.low, i.high] for name, i in problem.ranges.domain.items()]
+    declared = [[name, i.low, i.high] for name, i in (problem.declared or {}).items()]
     quantities = [[q.name, q.type.name] for q in problem.quantities]
     table = prices()
     costs = [[name, p.first, p.more] for name, p in table.operators.items()]
@@ -101,7 +101,7 @@ def key(problem: Problem, goal: Goal, effort: int | None) -> str:
     content = {
         "version": [__version__, rules, judged_at.hexdigest()],
         "formula": to_data(problem.exact),
-        "domain": [domain, quantities, bindings],
+        "domain": [domain, quantities, bindings, declared],
         "colours": [problem.colorimetry.white, problem.colorimetry.rows],
         "aim": [goal.kind, goal.limit, effort, table.dispatch, costs],
     }

@@ -15,6 +15,7 @@ from brdfc.lang.model import Quantity
 from brdfc.symbolic.expression import Expression, walk
 from brdfc.symbolic.formula import Formula
 from brdfc.symbolic.guards import guarded
+from brdfc.symbolic.intervals import Interval
 from brdfc.symbolic.ranges import Ranges
 
 EFFORT = 300
@@ -25,13 +26,15 @@ WORK = 9_500
 
 @dataclass(frozen=True)
 class Problem:
-    """What is to be compiled, and its surroundings. colorimetry: what its results look like."""
+    """What is to be compiled, and its surroundings. colorimetry: what its results look like.
+    declared: ranges beyond the formula's domain in which a program has to be finite, if any."""
 
     formula: Formula
     quantities: tuple[Quantity, ...]
     bindings: Mapping[str, Binding]
     inputs: int
     colorimetry: Colorimetry = XYZ_UNDER_D50
+    declared: Mapping[str, Interval] | None = None
 
     @property
     def exact(self) -> Expression:
@@ -46,6 +49,12 @@ class Problem:
     @cached_property
     def ranges(self) -> Ranges:
         return Ranges(self.formula.domain)
+
+    @property
+    def safe_ranges(self) -> Ranges:
+        """The ranges that guards are for. New each time: what those of a whole search still learn
+        depends on the forms before."""
+        return Ranges(self.declared or self.formula.domain)
 
     @property
     def default_effort(self) -> int:
@@ -68,5 +77,4 @@ class Problem:
 
     def graph(self, e: Expression) -> Node:
         """The operators of a form, guarded."""
-        # Ranges of its own: what those of a whole search still learn depends on the forms before.
-        return select(guarded(e, Ranges(self.ranges.domain))[0], self.bindings)
+        return select(guarded(e, self.safe_ranges)[0], self.bindings)

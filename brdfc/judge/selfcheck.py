@@ -52,7 +52,8 @@ def self_check(
     colorimetry: Colorimetry = XYZ_UNDER_D50,
 ) -> Verdict:
     """Judge a program by the model's exact expression; SelfCheckError when it fails, or differs by
-    more than limit CIEDE2000 anywhere. colorimetry: what its results look like."""
+    more than limit CIEDE2000 anywhere. samples: of all quantities of both, bindings: of those that
+    the program reads. colorimetry: what its results look like."""
     _check_encodings(program)
     facts = verify(program)
     points, undefined, worst, worst_at = 0, 0, 0.0, ""
@@ -92,6 +93,24 @@ def self_check(
     return Verdict(facts, points, undefined, worst, worst_at)
 
 
+def check_finite(
+    program: Program, bindings: Mapping[str, Binding], samples: Samples, where: str
+) -> None:
+    """Refuse a program that gives NaN or infinity at samples of a wider domain, of this name."""
+    for variables, columns in zip(samples.runs, samples.pixels, strict=True):
+        result = run(
+            program, _pixels(program, columns, bindings), _environment(variables, bindings)
+        )
+        broken = np.flatnonzero(~np.isfinite(result).all(axis=-1))
+        if len(broken):
+            first = int(broken[0])
+            raise SelfCheckError(
+                f"the program gives {result[first]} in {where}, where "
+                f"{_place(variables, columns, first)}",
+                hint="narrow the ranges that the model declares",
+            )
+
+
 def _check_encodings(program: Program) -> None:
     """Text and bytes stand for the same program; anything else is a fault of ours."""
     if assemble(disassemble(program.body)) != program.body:
@@ -107,22 +126,20 @@ def _pixels(
 ) -> NDArray[np.float32]:
     count = max((len(values) for values in columns.values()), default=1)
     pixels = np.zeros((count, program.inputs), dtype=np.float32)
-    for name, values in columns.items():
-        binding = bindings[name]
-        assert isinstance(binding, ChannelBinding)
-        pixels[:, binding.start : binding.start + binding.width] = values
+    for name, binding in bindings.items():
+        if isinstance(binding, ChannelBinding):
+            pixels[:, binding.start : binding.start + binding.width] = columns[name]
     return pixels
 
 
 def _environment(
     variables: Mapping[str, float], bindings: Mapping[str, Binding]
 ) -> dict[str, float]:
-    environment = {}
-    for name, value in variables.items():
-        binding = bindings[name]
-        assert isinstance(binding, VariableBinding)
-        environment[binding.signature] = value
-    return environment
+    return {
+        binding.signature: variables[name]
+        for name, binding in bindings.items()
+        if isinstance(binding, VariableBinding)
+    }
 
 
 def _truth(

@@ -52,11 +52,11 @@ class Described:
         return range_text(self.low, self.high, self.type)
 
 
-def value_text(values: Sequence[float], declared: DeclaredType) -> str:
+def value_text(values: Sequence[float], declared: DeclaredType, digits: int = 9) -> str:
     """Numbers as a user writes them: `45deg`, `0.15`, `(0.1,0.2,0.3)`."""
     unit = "deg" if declared.is_angle else ""
     numbers = [math.degrees(v) if declared.is_angle else v for v in values]
-    texts = [f"{number:.9g}{unit}" for number in numbers]
+    texts = [f"{number:.{digits}g}{unit}" for number in numbers]
     return texts[0] if len(set(texts)) == 1 else f"({','.join(texts)})"
 
 
@@ -71,14 +71,16 @@ def metadata(
     variables: Sequence[Quantity],
     constants: Mapping[str, str],
     facts: Mapping[str, str],
+    unread: Sequence[Quantity] = (),
 ) -> Dictionary:
     """The `meta` tag of a compiled model. constants: values as text by name; facts: what else the
-    compilation has to say."""
+    compilation has to say; unread: variables that no longer change anything, within their ranges.
+    """
     entries: list[tuple[str, str]] = [("model", model.name), ("title", model.title)]
     entries += [(f"citation.{i}", text) for i, text in enumerate(model.citations, 1)]
     entries += [(f"note.{i}", text) for i, text in enumerate(model.notes, 1)]
     entries += [("geometry", model.geometry)] if model.geometry else []
-    for role, quantities in (("channel", channels), ("env", variables)):
+    for role, quantities in (("channel", channels), ("env", variables), ("unread", unread)):
         for i, quantity in enumerate(quantities, 1):
             entries += _quantity_entries(f"{role}.{i}", quantity)
     for i, (name, value) in enumerate(constants.items(), 1):
@@ -95,7 +97,7 @@ def _quantity_entries(key: str, q: Quantity) -> list[tuple[str, str]]:
         (f"{key}.default", value_text(q.default, q.type)),
         (f"{key}.description", q.description),
     ]
-    named = q.signature and key.startswith("env")
+    named = q.signature and key.startswith(("env", "unread"))
     return entries + ([(f"{key}.signature", q.signature)] if named else [])
 
 
@@ -110,7 +112,8 @@ def _split(name: str, text: str) -> list[tuple[str, str]]:
 
 
 def describe(profile: Profile, role: str) -> tuple[Described, ...]:
-    """The quantities of a role ("channel" or "env") a profile describes; none if it does not.
+    """The quantities of a role ("channel", "env" or "unread") a profile describes; none if it does
+    not.
 
     Entries from outside that make no sense are passed over: they are a comment, not a rule.
     """
@@ -126,6 +129,16 @@ def describe(profile: Profile, role: str) -> tuple[Described, ...]:
             found.append(_as_sample(described, unit))
         index += 1
     return tuple(found)
+
+
+def describe_constants(profile: Profile) -> dict[str, str]:
+    """The quantities that a profile says were fixed, with their values as text."""
+    meta = profile.tags.get("meta")
+    found: dict[str, str] = {}
+    if isinstance(meta, Dictionary):
+        while (name := meta.get(f"constant.{len(found) + 1}")) is not None and name not in found:
+            found[name] = meta.get(f"constant.{len(found) + 1}.value") or ""
+    return found
 
 
 def _as_sample(described: Described, unit: str | None) -> Described:

@@ -7,6 +7,7 @@
     +-- ProfileError          a file that is not a well-formed ICC profile
     +-- LinkError             profiles that do not connect
     +-- SpectrumError         a table of a spectrum or of colour matching functions
+    +-- SceneError            a scene file, or what it asks of a model
     +-- ImageError            an image that cannot be read, applied or written
     +-- SelfCheckError        a compiled program that does not agree with its model
     +-- MissingExtraError     an optional package that this needs is not installed
@@ -61,6 +62,10 @@ class LinkError(BrdfcError):
 
 class SpectrumError(BrdfcError):
     """A table that is no spectrum, or a spectrum that does not fit what it is used with."""
+
+
+class SceneError(BrdfcError):
+    """A scene that cannot be; where names its key."""
 
 
 class ImageError(BrdfcError):

@@ -68,9 +68,25 @@ def evaluate(
     values: an array (..., components) for every quantity, broadcast against each other; angles in
     radians. Returns (..., width).
     """
-    done: dict[Expression, NDArray[np.float64]] = {}
+    result = evaluate_parts(expression, values)[expression]
+    shape = np.broadcast_shapes(result.shape, *((*np.shape(v)[:-1], 1) for v in values.values()))
+    return np.broadcast_to(result, (*shape[:-1], expression.width)).astype(np.float64)
+
+
+def evaluate_parts(
+    expression: Expression,
+    values: Mapping[str, NDArray[np.float64]],
+    known: Mapping[Expression, NDArray[np.float64]] | None = None,
+) -> dict[Expression, NDArray[np.float64]]:
+    """Float64 values of every part of an expression, as for evaluate, but not broadcast.
+
+    known: values of some of them, of another expression at the same points.
+    """
+    done = dict(known or {})
     with np.errstate(all="ignore"):
         for e in walk(expression):
+            if e in done:
+                continue
             arguments = [done[a] for a in e.arguments]
             if e.operator == "const":
                 done[e] = np.array([nearest(e.value)])
@@ -84,9 +100,7 @@ def evaluate(
                 done[e] = arguments[0][..., e.index : e.index + 1]
             else:
                 done[e] = np.asarray(_FLOAT64[e.operator](*arguments))
-    result = done[expression]
-    shape = np.broadcast_shapes(result.shape, *((*np.shape(v)[:-1], 1) for v in values.values()))
-    return np.broadcast_to(result, (*shape[:-1], expression.width)).astype(np.float64)
+    return done
 
 
 _Number = Any

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from functools import cache
 
-from brdfc.compiler import Compiled, compile_model, problem_of
+from brdfc.compiled import Compiled
+from brdfc.compiler import compile_model
 from brdfc.judge.problem import Problem
 from brdfc.judge.rival import Subject, as_written, subject
 from brdfc.lang.load import load_text
 from brdfc.lang.model import Model
+from brdfc.prepared import problem_of
 
 _DIFFUSE = """channel Rd : XYZ       in 0..1     = 0.5    "diffuse reflectance"
 """

@@ -10,13 +10,13 @@ from random_expressions import naive_values, points, random_domain, random_expre
 from random_expressions import values_at as quantities_at
 
 from brdfc.codegen.select import select
-from brdfc.compiler import prepare, problem_of
 from brdfc.judge.bound import error_bound
 from brdfc.judge.measure import Judge
 from brdfc.judge.problem import Problem
 from brdfc.judge.strata import points as strata
 from brdfc.lang.load import load, load_text
 from brdfc.lang.model import Model
+from brdfc.prepared import prepare, problem_of
 from brdfc.symbolic.evaluate import evaluate_precisely
 from brdfc.symbolic.expression import Expression, const, make, quantity
 from brdfc.symbolic.guards import guarded

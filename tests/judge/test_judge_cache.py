@@ -15,13 +15,14 @@ from brdfc.calc.binary import encode_element
 from brdfc.calc.program import Program
 from brdfc.calc.text import assemble
 from brdfc.colour.colorimetry import Colorimetry
-from brdfc.compiler import compile_model, prepare, problem_of
+from brdfc.compiler import compile_model
 from brdfc.judge import cache
 from brdfc.judge.cache import folder, holds, key, recall, remember, summary
 from brdfc.judge.explore import explore
 from brdfc.judge.goals import GOALS, Goal
 from brdfc.judge.problem import Problem
 from brdfc.lang.load import load
+from brdfc.prepared import prepare, problem_of
 from brdfc.symbolic.expression import make, quantity, vector
 from brdfc.symbolic.formula import Formula
 from brdfc.symbolic.intervals import Interval

@@ -22,7 +22,7 @@ from brdfc.codegen.group import grouped, pairs
 from brdfc.codegen.nodes import postorder
 from brdfc.codegen.schedule import schedule
 from brdfc.codegen.select import select
-from brdfc.compiler import compile_model, prepare, problem_of
+from brdfc.compiler import compile_model
 from brdfc.engine.interpreter import run
 from brdfc.judge import cache as remembered
 from brdfc.judge import explore as explore_module
@@ -32,6 +32,7 @@ from brdfc.judge.goals import GOALS, Goal, goal
 from brdfc.judge.problem import Problem
 from brdfc.lang.load import load, load_text
 from brdfc.lang.model import Model
+from brdfc.prepared import prepare, problem_of
 from brdfc.source.errors import SelfCheckError, ValueGivenError
 from brdfc.symbolic.expression import component, make
 

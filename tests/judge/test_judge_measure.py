@@ -11,7 +11,6 @@ import pytest
 from brdfc.calc.program import Program
 from brdfc.codegen.schedule import schedule
 from brdfc.codegen.select import VariableBinding, select
-from brdfc.compiler import prepare, problem_of
 from brdfc.engine.interpreter import run
 from brdfc.forms.texts import pattern
 from brdfc.judge.explore import explore
@@ -20,6 +19,7 @@ from brdfc.judge.measure import Judge, Measured
 from brdfc.judge.problem import Problem
 from brdfc.judge.strata import FEW, STRATA, Points, points
 from brdfc.lang.load import load
+from brdfc.prepared import prepare, problem_of
 from brdfc.symbolic.expression import Expression, const, make, quantity, rebuild, walk
 from brdfc.symbolic.guards import guarded
 from brdfc.symbolic.intervals import Interval, single

@@ -13,7 +13,7 @@ from brdfc.calc.text import assemble, disassemble
 from brdfc.codegen.estimate import estimated_price
 from brdfc.codegen.nodes import postorder
 from brdfc.codegen.select import ChannelBinding, select
-from brdfc.compiler import compile_model, prepare, problem_of
+from brdfc.compiler import compile_model
 from brdfc.forms.neighbours import Neighbours
 from brdfc.forms.search import Form, Score
 from brdfc.forms.texts import pattern
@@ -23,6 +23,7 @@ from brdfc.judge.graphs import Graphs
 from brdfc.judge.regimes import Side, Splitter, between
 from brdfc.lang.load import load, load_text
 from brdfc.lang.model import Model
+from brdfc.prepared import prepare, problem_of
 from brdfc.symbolic.expression import walk
 from brdfc.symbolic.intervals import Interval
 from brdfc.symbolic.ranges import Ranges

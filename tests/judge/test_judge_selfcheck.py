@@ -11,7 +11,8 @@ import pytest
 
 from brdfc import load
 from brdfc.calc.program import Block, If, Instruction, Op, Program
-from brdfc.compiler import Compiled, compile_model
+from brdfc.compiled import Compiled
+from brdfc.compiler import compile_model
 from brdfc.engine import kernels
 from brdfc.judge.samples import sample
 from brdfc.judge.selfcheck import LIMIT, self_check

@@ -25,7 +25,7 @@ from stability_models import (
 
 from brdfc.calc.program import Op, Program
 from brdfc.codegen.select import VariableBinding
-from brdfc.compiler import compile_model, prepare, problem_of
+from brdfc.compiler import compile_model
 from brdfc.engine.interpreter import run
 from brdfc.judge import stability
 from brdfc.judge.error_map import error_map
@@ -34,6 +34,7 @@ from brdfc.judge.failures import Row, overall
 from brdfc.judge.rival import as_written, pixels, subject
 from brdfc.judge.stability import count_failures, judge_strata
 from brdfc.lang.load import library, load
+from brdfc.prepared import prepare, problem_of
 from brdfc.source.errors import BrdfcError
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "stability.txt"

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from stability_models import compiled
 
-from brdfc.compiler import prepare, problem_of
 from brdfc.judge.directions import directions, wrapped
 from brdfc.judge.failure_strata import STRATA, applicable, failure_points
 from brdfc.judge.problem import Problem
@@ -16,6 +15,7 @@ from brdfc.judge.samples import sample
 from brdfc.judge.strata import Points, points
 from brdfc.lang.load import load, load_text
 from brdfc.lang.model import Model
+from brdfc.prepared import prepare, problem_of
 
 RIGHT = float(np.float32(math.pi / 2))
 EACH = 2_000

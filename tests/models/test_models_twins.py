@@ -10,11 +10,11 @@ import math
 import numpy as np
 import pytest
 
-from brdfc.compiler import prepare, problem_of
 from brdfc.judge import strata
 from brdfc.judge.rival import as_written
 from brdfc.lang.load import library, load, textbook_form
 from brdfc.lang.model import Model
+from brdfc.prepared import prepare, problem_of
 from brdfc.symbolic.evaluate import evaluate_precisely
 from brdfc.symbolic.formula import formula
 

@@ -10,10 +10,10 @@ import pytest
 from numpy.typing import NDArray
 from textbook import PRECISE, SIXTY_DIGITS, TEXTBOOK, directions, plane_directions
 
-from brdfc.compiler import prepare
 from brdfc.judge import strata
 from brdfc.lang.load import library, load
 from brdfc.lang.model import Model
+from brdfc.prepared import prepare
 from brdfc.symbolic.evaluate import evaluate, evaluate_precisely
 
 Array = NDArray[np.float64]

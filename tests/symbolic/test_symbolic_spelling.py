@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 import brdfc
-from brdfc.compiler import prepare
 from brdfc.forms.texts import pattern
+from brdfc.prepared import prepare
 from brdfc.symbolic.evaluate import evaluate_precisely
 from brdfc.symbolic.expression import make, quantity
 from brdfc.symbolic.spelling import spelled
