@@ -25,7 +25,7 @@ from brdfc.prepared import prepare, problem_of
 from brdfc.profiles.content import Content
 from brdfc.profiles.metadata import metadata, value_text
 from brdfc.roles import Roles, Value
-from brdfc.sceneplan import plan_for
+from brdfc.sceneplan import in_scene, plan_for
 from brdfc.scenes.scene import Scene
 from brdfc.source.errors import BrdfcError, SelfCheckError, ValueGivenError
 from brdfc.symbolic.guards import guarded
@@ -85,8 +85,9 @@ def compile_model(
     pixel = (*channels, *(n for n in pixel_quantities(arrangement, model) if n not in named))
     planned = None
     if scene is not None:
-        planned = plan_for(model, scene, fixed, pixel, colours, cache)
-        ready, roles, problem = planned.ready, planned.roles, planned.problem
+        at = in_scene(model, scene, colours, fixed, pixel, cache)
+        planned = plan_for(at)
+        ready, roles, problem = at.ready, planned.roles, planned.problem
         aim, limit, samples = planned.goal, scene.tolerance, planned.inside
     else:
         roles, ready = prepare(model, fixed, pixel, cache, colours.formula_white)
@@ -104,7 +105,7 @@ def compile_model(
         cost = price(program)
     try:
         verdict = self_check(
-            program, ready.exact, problem.bindings, samples, limit, colours.colorimetry
+            program, ready.exact, problem.bindings, samples, limit, problem.colorimetry
         )
     except SelfCheckError as error:
         if planned is not None:

@@ -1,22 +1,51 @@
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from brdfc.cli.colour_options import rendered, rendering_options
-from brdfc.cli.options import environment_option, extrapolate_option, row_progress, warn_of_defaults
+from brdfc.cli.options import (
+    environment_option,
+    extrapolate_option,
+    geometry_option,
+    pairs,
+    row_progress,
+    warn_of_defaults,
+)
+from brdfc.cli.search_options import end_progress, shown_progress
+
+if TYPE_CHECKING:
+    from brdfc.compiled import Compiled
 
 
 @click.command("apply")
-@click.argument("files", nargs=-1, required=True, metavar="PROFILE... IMAGE")
+@click.argument("files", nargs=-1, required=True, metavar="PROFILE...|MODEL IMAGE")
 @click.option("-o", "output", required=True, metavar="OUT.tif", help="The image to write.")
 @environment_option
 @extrapolate_option
 @rendering_options
-def command(files: tuple[str, ...], output: str, environment: tuple[str, ...], **how: Any) -> None:
-    """Evaluate IMAGE, a float32 TIFF of coefficients, through a MID and an MVIS, or through one
-    profile whose device values they are.
+@click.option(
+    "--scene", metavar="FILE", help="With a model: its light, tolerance and ranges (scene.toml)."
+)
+@click.option(
+    "--tolerance",
+    type=float,
+    metavar="dE",
+    help="With a model: CIEDE2000 that the colours may be off. Default: the scene's, or 0.01.",
+)
+@geometry_option
+def command(
+    files: tuple[str, ...],
+    output: str,
+    environment: tuple[str, ...],
+    scene: str | None,
+    tolerance: float | None,
+    geometry: str | None,
+    **how: Any,
+) -> None:
+    """Evaluate IMAGE, a float32 TIFF of coefficients, through a MID and an MVIS, through one
+    profile whose device values they are, or through a model compiled for exactly this image.
 
     Its samples are the channels in the order `brdfc compile` prints them. The output is a TIFF:
     float32 X, Y, Z, with Y = 1 for white, unless --to says otherwise.
@@ -27,7 +56,9 @@ def command(files: tuple[str, ...], output: str, environment: tuple[str, ...], *
             --env incident=40deg --env reflection=10deg
       brdfc apply ward_mid.icc ward_mvis.icc coefficients.tif -o picture.tif --to sRGB
       brdfc apply ward_mid.icc ward_mvis.icc coefficients.tif -o under_a.tif --adapt A
+      brdfc apply ward coefficients.tif -o xyz.tif --env incident=40deg --env reflection=10deg
     """
+    from brdfc.checker import is_profile
     from brdfc.files import refuse_same
     from brdfc.images.apply import apply_to_tiff
 
@@ -35,7 +66,14 @@ def command(files: tuple[str, ...], output: str, environment: tuple[str, ...], *
     if not profiles:
         raise click.UsageError("give the profiles first, then the image")
     refuse_same([output], files)
-    chosen = rendered(profiles, environment, **how)
+    if len(profiles) == 1 and not is_profile(profiles[0]):
+        saved = _Compiled(profiles[0], image, environment, scene, tolerance, geometry, how["to"])
+        chosen = rendered([saved.compiled.mid, saved.compiled.mvis], environment, **how)
+    else:
+        if scene is not None or tolerance is not None or geometry is not None:
+            raise click.UsageError("--scene, --tolerance and --geometry are a model's")
+        saved = None
+        chosen = rendered(profiles, environment, **how)
     warn_of_defaults(chosen.link)
     run = ", ".join(environment) or "default angles"
     applied = apply_to_tiff(chosen, image, output, run, row_progress())
@@ -52,4 +90,63 @@ def command(files: tuple[str, ...], output: str, environment: tuple[str, ...], *
             err=True,
         )
     click.echo(f"{applied.pixels:,} pixels")
+    if saved is not None:
+        saved.report(image)
     click.echo(f"wrote {output}")
+
+
+class _Compiled:
+    """A model compiled for an image, and what is said of it."""
+
+    def __init__(
+        self,
+        name: str,
+        image: str,
+        environment: tuple[str, ...],
+        scene: str | None,
+        tolerance: float | None,
+        geometry: str | None,
+        to: str,
+    ) -> None:
+        from dataclasses import replace
+
+        from brdfc.imagescene import compile_for_image
+        from brdfc.lang.load import load
+        from brdfc.scenes.scene import Scene, checked_tolerance, read_scene
+
+        given = read_scene(scene) if scene is not None else Scene("--env")
+        if tolerance is not None:
+            given = replace(given, tolerance=checked_tolerance(tolerance, "--tolerance"))
+        if to.lower() == "srgb":
+            given = replace(given, output="sRGB")
+        self.model = load(name, geometry or given.geometry)
+        self.compiled, self.took = compile_for_image(
+            self.model, image, pairs(environment, "--env"), given, shown_progress
+        )
+        end_progress()
+
+    def report(self, image: str) -> None:
+        """What was left out, and the time that saved."""
+        from brdfc.compiler import compile_model
+        from brdfc.imagescene import time_saved
+
+        compiled = self.compiled
+        assert compiled.plan is not None
+        for line in compiled.plan.ledger():
+            click.echo(f"left out     {line}")
+        at = compiled.plan.at
+        general: Compiled = compile_model(
+            self.model,
+            channels=at.narrowed.pixel,
+            conditions=at.scene.conditions,
+            highlight=at.scene.highlight,
+        )
+        found = time_saved(compiled, general, image, self.took)
+        click.echo(
+            f"{compiled.price:.0f} ns a pixel on the reference engine by the price table, and "
+            f"{general.price:.0f} with the general profile"
+        )
+        click.echo(
+            f"{found.scene:.3g} s here, {found.general:.3g} with the general profile: "
+            f"{found.general - found.scene:.3g} s saved, for {found.compiling:.2g} s of compiling"
+        )

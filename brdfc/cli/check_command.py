@@ -1,13 +1,17 @@
 from __future__ import annotations
 
 import sys
+from functools import partial
 
 import click
 
 
 @click.command("check")
 @click.argument("target", metavar="MODEL|PROFILE")
-def command(target: str) -> None:
+@click.option(
+    "--scene", metavar="FILE", help="Whether a profile (the MVIS) serves a scene (scene.toml)."
+)
+def command(target: str, scene: str | None) -> None:
     """Verify everything that can be verified about a model or a profile, one line each.
 
     Lines begin with ok, warning, error, or open (not checked). The exit status is 1 if there is
@@ -17,11 +21,19 @@ def command(target: str) -> None:
     Example:
       brdfc check ward
       brdfc check ward_mvis.icc
+      brdfc check ward_mvis.icc --scene scene.toml
     """
-    from brdfc.checker import ERROR, check
+    from brdfc.checker import ERROR, check, is_profile
 
+    found = check
+    if scene is not None:
+        from brdfc.scenecheck import check_scene
+
+        if not is_profile(target):
+            raise click.UsageError("--scene takes a profile; compile the model for the scene first")
+        found = partial(check_scene, scene_path=scene)
     failed = False
-    for finding in check(target):
+    for finding in found(target):
         failed |= finding.status == ERROR
         click.echo(f"{finding.status:<8} {finding.message}")
     if failed:

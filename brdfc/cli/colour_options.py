@@ -12,6 +12,7 @@ from brdfc.cli.options import connected
 if TYPE_CHECKING:
     from brdfc.cmm.rendering import Rendering
     from brdfc.colour.conditions import ViewingConditions
+    from brdfc.icc.profile import Profile
 
 _ILLUMINANT = "A|D50|D65|FL2|...|blackbody:2856K|daylight:6500K|FILE.csv"
 _OBSERVER = "1931-2|1964-10|FILE.csv"
@@ -148,7 +149,7 @@ def rendering_options(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def rendered(
-    profiles: Sequence[str],
+    profiles: Sequence[str | Profile],
     environment: Sequence[str],
     to: str,
     adapt: str | None,

@@ -201,13 +201,13 @@ def _scene(path: str | None, tolerance: float | None) -> Scene | None:
 
 
 def _show_scene(plan: Plan, explain: bool) -> None:
-    found, lean = plan.narrowed.measured, plan.fitted.lean
+    found, lean = plan.at.narrowed.measured, plan.fitted.lean
     if found is not None:
         click.echo(f"image        {found.pixels:,} pixels")
         for name, ends, middle in zip(found.names, found.ends, found.percentiles, strict=True):
             click.echo(
-                f"             {name}: {ends[0]:.6g}..{ends[1]:.6g}, but for the outermost 1 % "
-                f"{middle[0]:.6g}..{middle[1]:.6g}"
+                f"             {name}: {ends[0]:.6g}..{ends[1]:.6g} (percentiles 1 and 99: "
+                f"{middle[0]:.6g}..{middle[1]:.6g})"
             )
         for name in found.stretched:
             click.echo(
@@ -217,7 +217,9 @@ def _show_scene(plan: Plan, explain: bool) -> None:
             )
         if found.outside:
             click.echo(f"             {found.outside:,} pixels lie outside what is kept to")
-    click.echo(f"scene        CIEDE2000 within {plan.scene.tolerance:g} for {plan.scene.output}")
+    click.echo(
+        f"scene        CIEDE2000 within {plan.at.scene.tolerance:g} for {plan.at.scene.output}"
+    )
     for line in plan.ledger():
         click.echo(f"left out     {line}")
     if lean.omissions:

@@ -11,6 +11,7 @@ import click
 
 if TYPE_CHECKING:
     from brdfc.cmm.link import Link
+    from brdfc.icc.profile import Profile
 
 
 def pairs(values: Iterable[str], option: str) -> dict[str, str]:
@@ -87,7 +88,7 @@ def extrapolate_option(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def connected(
-    profiles: Sequence[str],
+    profiles: Sequence[str | Profile],
     environment: Iterable[str],
     transform: str | None = None,
     extrapolate: bool = False,
@@ -102,7 +103,7 @@ def connected(
     from brdfc.lang.types import TYPES
     from brdfc.lang.values import parse_value
 
-    loaded = [Profile.load(path) for path in profiles]
+    loaded = [p if isinstance(p, Profile) else Profile.load(p) for p in profiles]
     given = pairs(environment, "--env")
     types = {}
     if given:

@@ -15,13 +15,34 @@ BRIGHTEST = 100.0
 """Times white: the brightest that colours are compared at."""
 
 
+Rows = tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
+class Display:
+    """A display that shows each primary from 0 to 1, and clips the rest. to_primaries: three rows
+    that make its primaries of X, Y, Z under the colorimetry's white; to_xyz: three that make X, Y,
+    Z under its own white of the primaries."""
+
+    to_primaries: Rows
+    to_xyz: Rows
+    white: XYZ
+
+    def shown(self, xyz: NDArray[np.float64]) -> NDArray[np.float64]:
+        """X, Y, Z (..., 3) of what it shows."""
+        primaries = np.clip(xyz @ np.array(self.to_primaries).T, 0.0, 1.0)
+        return np.asarray(primaries @ np.array(self.to_xyz).T)
+
+
 @dataclass(frozen=True)
 class Colorimetry:
     """white: X, Y, Z of a perfect diffuser. rows: three rows that make X, Y, Z of the values; none
-    where the values are XYZ already."""
+    where the values are XYZ already. display: where colours are compared as a display shows them.
+    """
 
     white: XYZ = D50
-    rows: tuple[tuple[float, ...], ...] = ()
+    rows: Rows = ()
+    display: Display | None = None
 
     @property
     def width(self) -> int:
@@ -40,10 +61,13 @@ class Colorimetry:
         makes no sense of a highlight of a million times white, where the rounding of a neutral
         float32 would be a visible hue.
         """
-        truth = self.xyz(second)
+        colours, truth = self.xyz(first), self.xyz(second)
+        if self.display is not None:
+            shown = self.display.shown
+            return ciede2000(shown(colours), shown(truth), self.display.white)
         brightness = np.max(np.abs(truth) / self.white, axis=-1, keepdims=True, initial=BRIGHTEST)
         dimmed = BRIGHTEST / brightness
-        return ciede2000(self.xyz(first) * dimmed, truth * dimmed, self.white)
+        return ciede2000(colours * dimmed, truth * dimmed, self.white)
 
 
 XYZ_UNDER_D50 = Colorimetry()

@@ -5,8 +5,22 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from brdfc.colour.colorimetry import XYZ, Display
 from brdfc.colour.difference import D50
 from brdfc.colour.library import colour_science
+
+
+def srgb_display(white: XYZ) -> Display:
+    """What srgb shows of XYZ under a white, before it is rounded to 8 bits."""
+    from brdfc.colour.adaptation import adaptation_matrix
+
+    space = colour_science().RGB_COLOURSPACES["sRGB"]
+    own = np.asarray(space.matrix_RGB_to_XYZ, dtype=np.float64)
+    x, y, z = own.sum(axis=1).tolist()
+    to_primaries = np.linalg.inv(own) @ adaptation_matrix(white, (x, y, z))
+    return Display(
+        tuple(map(tuple, to_primaries.tolist())), tuple(map(tuple, own.tolist())), (x, y, z)
+    )
 
 
 def srgb(xyz: ArrayLike) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:

@@ -102,7 +102,7 @@ def key(problem: Problem, goal: Goal, effort: int | None) -> str:
         "version": [__version__, rules, judged_at.hexdigest()],
         "formula": to_data(problem.exact),
         "domain": [domain, quantities, bindings, declared],
-        "colours": [problem.colorimetry.white, problem.colorimetry.rows],
+        "colours": repr(problem.colorimetry),
         "aim": [goal.kind, goal.limit, effort, table.dispatch, costs],
     }
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()

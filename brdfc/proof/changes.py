@@ -67,7 +67,7 @@ class Changes:
         share = self._share(first, second) if first.operator in _PLAIN else None
         if share is not None:
             followed = followed.met((value * share).where(share.value.size < _TRUSTED))
-        return followed.within(apart.value)
+        return followed.met(apart)
 
     def share(self, first: Expression, second: Expression) -> Varying:
         """(second - first)/first: tighter where first is a product of what varies together."""

@@ -11,19 +11,43 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from brdfc.colour.colorimetry import Colorimetry
-from brdfc.symbolic.expression import ZERO, Expression, component, const, make, rebuild
+from brdfc.symbolic.expression import ONE, ZERO, Expression, component, const, make, rebuild, vector
 
 Weights = Sequence[Fraction]
 
 
 def opponent(formula: Expression, colorimetry: Colorimetry) -> tuple[Expression, ...]:
     """y, x, z, x - y and y - z of a formula's values, relative to the white."""
-    width = colorimetry.width
-    rows = colorimetry.rows or [[float(i == j) for j in range(3)] for i in range(3)]
-    white = [Fraction(str(float(w))) for w in colorimetry.white]
-    x, y, z = ([Fraction(row[j]) / white[i] for j in range(width)] for i, row in enumerate(rows))
+    rows, white, display = _exact(colorimetry.rows or _SAME), colorimetry.white, colorimetry.display
+    if display is not None:
+        to_primaries = _product(_exact(display.to_primaries), rows)
+        formula = vector([_clipped(weighted(formula, row)) for row in to_primaries])
+        rows, white = _exact(display.to_xyz), display.white
+    x, y, z = (
+        [value / Fraction(str(float(w))) for value in row]
+        for row, w in zip(rows, white, strict=True)
+    )
     signals = (y, x, z, _less(x, y), _less(y, z))
     return tuple(weighted(formula, weights) for weights in signals)
+
+
+_SAME = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def _exact(rows: Sequence[Sequence[float]]) -> list[list[Fraction]]:
+    return [[Fraction(value) for value in row] for row in rows]
+
+
+def _product(a: list[list[Fraction]], b: list[list[Fraction]]) -> list[list[Fraction]]:
+    columns = list(zip(*b, strict=True))
+    return [
+        [sum((p * q for p, q in zip(row, column, strict=True)), Fraction(0)) for column in columns]
+        for row in a
+    ]
+
+
+def _clipped(primary: Expression) -> Expression:
+    return make("min", make("max", primary, ZERO), ONE)
 
 
 def _less(a: Weights, b: Weights) -> Weights:

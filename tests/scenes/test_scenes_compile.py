@@ -44,8 +44,8 @@ def worst(found: Compiled, count: int = 20_000) -> float:
     """The largest difference of profiles from the whole formula, at random points of the scene."""
     assert found.plan is not None
     random = np.random.default_rng(5)
-    ranges = found.plan.narrowed.ranges
-    whole = found.plan.whole
+    ranges = found.plan.at.narrowed.ranges
+    whole = found.plan.at.roles
     runs = []
     for _ in range(20):
         env, columns = {}, {}
@@ -61,7 +61,7 @@ def worst(found: Compiled, count: int = 20_000) -> float:
         got = link.apply(samples[:, [names.index(n) for n in link.channels]])
         values = {n: v.astype(np.float64) for n, v in columns.items()}
         values |= {n: np.array([v]) for n, v in env.items()}
-        truth = evaluate(found.plan.ready.exact, values)
+        truth = evaluate(found.plan.at.ready.exact, values)
         runs.append(found.plan.problem.colorimetry.difference(got, truth).max())
     return float(max(runs))
 
@@ -91,7 +91,7 @@ def test_the_reference_engine_agrees(swept: Compiled, tmp_path: Path) -> None:
         pytest.skip("the reference engine is not installed")
     mid, mvis = swept.save(tmp_path / "scene_mvis.icc")
     pixels = np.array([[0.1, 0.2, 0.4, 0.03, 0.22, 0.045]], np.float32)
-    names = swept.plan.whole.channel_names if swept.plan else ()
+    names = swept.plan.at.roles.channel_names if swept.plan else ()
     env = {"incident": 0.7, "reflection": 0.1}
     link = brdfc.connect(mid, mvis, env=env)
     pixels = pixels[:, [names.index(n) for n in link.channels]]
