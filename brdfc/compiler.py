@@ -25,7 +25,7 @@ from brdfc.prepared import prepare, problem_of
 from brdfc.profiles.content import Content
 from brdfc.profiles.metadata import metadata, value_text
 from brdfc.roles import Roles, Value
-from brdfc.sceneplan import in_scene, plan_for
+from brdfc.sceneplan import Plan, in_scene, plan_for
 from brdfc.scenes.scene import Scene
 from brdfc.source.errors import BrdfcError, SelfCheckError, ValueGivenError
 from brdfc.symbolic.guards import guarded
@@ -158,15 +158,20 @@ def explore_model(
     conditions: ViewingConditions | None = None,
     highlight: str | None = None,
     progress: Progress = _silent,
+    planned: Plan | None = None,
 ) -> Explored:
     """Every form of a model that a search finds, measured; arguments as for compile_model.
 
-    Raises BrdfcError where every form fails.
+    planned: for a scene, the forms of what is left of the model there; all that says how exact and
+    under which light is the scene's then. Raises BrdfcError where every form fails.
     """
-    colours = colours_of(model, conditions, highlight)
-    roles, ready = prepare(model, set or {}, channels, white=colours.formula_white)
-    problem = problem_of(roles, ready, colours.colorimetry)
-    aim = goal(optimize, max_error)
+    if planned is not None:
+        problem, aim = planned.problem, planned.goal
+    else:
+        colours = colours_of(model, conditions, highlight)
+        roles, ready = prepare(model, set or {}, channels, white=colours.formula_white)
+        problem = problem_of(roles, ready, colours.colorimetry)
+        aim = goal(optimize, max_error)
     found = explore(problem, aim, effort or problem.default_effort, progress, thorough=True)
     if found is None:
         raise BrdfcError(

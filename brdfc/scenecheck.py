@@ -157,38 +157,51 @@ def _light(profile: Profile, scene: Scene) -> Finding:
 
 
 def _difference(profile: Profile, at: InScene) -> Finding:
-    """The worst difference of the profile from the model's own formula, at samples of the scene."""
-    samples = at.samples(RUNS, PIXELS)
-    worst, where = 0.0, ""
-    known = {d.name for d in describe(profile, "env")}
-    fixed = {
-        name: np.full((PIXELS, 1), value, np.float32)
-        for q in at.model.quantities
-        if q.name in at.narrowed.fixed
-        for name, value in zip(q.component_names, at.narrowed.fixed[q.name], strict=True)
-    }
-    for run, columns in zip(samples.runs, samples.pixels, strict=True):
-        env = {n: float(v[0, 0]) for n, v in fixed.items()} | dict(run)
-        link = connect_alone(profile, {n: v for n, v in env.items() if n in known})
-        given = {**fixed, **columns}
-        missing = [name for name in link.channels if name not in given]
-        if missing:
-            return Finding(OPEN, f"difference: the model does not have the channel '{missing[0]}'")
-        found = link.apply(np.concatenate([given[name] for name in link.channels], axis=-1))
-        values = {n: v.astype(np.float64) for n, v in columns.items()}
-        values |= {n: np.array([v]) for n, v in run.items()}
-        truth = at.colorimetry.xyz(evaluate(at.ready.exact, values))
-        off = replace(at.colorimetry, rows=()).difference(found, truth)
-        index = int(np.nan_to_num(off, nan=np.inf).argmax())
-        if not off[index] <= worst:
-            worst = float(off[index])
-            point = {n: v[index] for n, v in columns.items() if n in at.ready.domain}
-            point |= {n: np.array([v]) for n, v in run.items()}
-            types = {q.name: q.type for q in at.roles.channels + at.roles.variables}
-            where = " ".join(f"{n}={value_text(v.tolist(), types[n], 5)}" for n, v in point.items())
+    found = compared(profile, at)
+    if isinstance(found, str):
+        return Finding(OPEN, f"difference: the model does not have the channel '{found}'")
+    worst, where = found
     good = worst <= at.scene.tolerance
     return Finding(
         OK if good else ERROR,
         f"difference: CIEDE2000 {worst:.2g} at worst of {RUNS * PIXELS:,} points, "
         f"{'within' if good else 'beyond'} the tolerance of {at.scene.tolerance:g}, where {where}",
     )
+
+
+def compared(
+    profile: Profile, at: InScene, runs: int = RUNS, pixels: int = PIXELS
+) -> tuple[float, str] | str:
+    """The worst difference of a profile's colours from a model's own formula, CIEDE2000, at samples
+    of the scene, and where that is; or the name of a channel that the model does not have."""
+    samples = at.samples(runs, pixels)
+    known = {d.name for d in describe(profile, "env")}
+    fixed = {
+        name: np.full((pixels, 1), value, np.float32)
+        for q in at.model.quantities
+        if q.name in at.roles.constants
+        for name, value in zip(q.component_names, at.roles.constants[q.name], strict=True)
+    }
+    off, points = [], []
+    for run, columns in zip(samples.runs, samples.pixels, strict=True):
+        env = {n: float(v[0, 0]) for n, v in fixed.items()} | dict(run)
+        link = connect_alone(profile, {n: v for n, v in env.items() if n in known})
+        given = {**fixed, **columns}
+        missing = [name for name in link.channels if name not in given]
+        if missing:
+            return missing[0]
+        found = link.apply(np.concatenate([given[name] for name in link.channels], axis=-1))
+        values = {n: v.astype(np.float64) for n, v in columns.items()}
+        values |= {n: np.array([v]) for n, v in run.items()}
+        truth = at.colorimetry.xyz(evaluate(at.ready.exact, values))
+        # What the model leaves undefined has no difference.
+        apart = replace(at.colorimetry, rows=()).difference(found, truth)
+        off.append(np.where(np.isfinite(truth).all(axis=-1), np.nan_to_num(apart, nan=np.inf), 0.0))
+        points.append((run, columns))
+    number, pixel = np.unravel_index(int(np.argmax(off)), np.shape(off))
+    run, columns = points[number]
+    point = {n: v[pixel].tolist() for n, v in columns.items() if n in at.ready.domain}
+    point |= {n: [v] for n, v in run.items()}
+    types = {q.name: q.type for q in at.roles.channels + at.roles.variables}
+    where = " ".join(f"{n}={value_text(v, types[n], 5)}" for n, v in point.items())
+    return float(off[number][pixel]), where

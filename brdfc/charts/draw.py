@@ -11,18 +11,19 @@ from brdfc.files import write_whole
 from brdfc.source.errors import BrdfcError, MissingExtraError
 
 
-def draw(points: Sequence[Point], path: str | Path, title: str) -> None:
+def draw(points: Sequence[Point], path: str | Path, title: str, notes: Sequence[str] = ()) -> None:
     """Chart price against worst bits and worst CIEDE2000, whole or not at all.
 
     path: its suffix says what is written: a picture (.svg, .png), a page to explore (.html) or a
-    table (.csv). The same points give the same bytes. Raises BrdfcError for another suffix or for
-    no points, MissingExtraError where matplotlib is not installed (the table does without).
+    table (.csv). notes: lines below the chart, a table of their own in a page; a .csv has none. The
+    same points give the same bytes. Raises BrdfcError for another suffix or for no points,
+    MissingExtraError where matplotlib is not installed (the table does without).
     """
     kind = chart_kind(path)
     if not points:
         raise BrdfcError("there is nothing to chart: no form was measured", where=str(path))
     _refuse_twins(points)
-    write_whole(path, _KINDS[kind](points, title))
+    write_whole(path, _KINDS[kind](points, title, notes))
 
 
 def chart_kind(path: str | Path) -> str:
@@ -47,29 +48,29 @@ def _refuse_twins(points: Sequence[Point]) -> None:
         seen.add((point.layer, point.name))
 
 
-def _svg(points: Sequence[Point], title: str) -> bytes:
+def _svg(points: Sequence[Point], title: str, notes: Sequence[str]) -> bytes:
     from brdfc.charts.figure import rendered
 
-    return rendered(points, title, "svg")
+    return rendered(points, title, "svg", notes)
 
 
-def _png(points: Sequence[Point], title: str) -> bytes:
+def _png(points: Sequence[Point], title: str, notes: Sequence[str]) -> bytes:
     from brdfc.charts.figure import rendered
 
-    return rendered(points, title, "png")
+    return rendered(points, title, "png", notes)
 
 
-def _html(points: Sequence[Point], title: str) -> bytes:
+def _html(points: Sequence[Point], title: str, notes: Sequence[str]) -> bytes:
     from brdfc.charts.page import page
 
-    return page(points, title)
+    return page(points, title, notes)
 
 
-def _csv(points: Sequence[Point], title: str) -> bytes:
+def _csv(points: Sequence[Point], _title: str, _notes: Sequence[str]) -> bytes:
     return csv_table(points)
 
 
-_KINDS: dict[str, Callable[[Sequence[Point], str], bytes]] = {
+_KINDS: dict[str, Callable[[Sequence[Point], str, Sequence[str]], bytes]] = {
     ".svg": _svg,
     ".png": _png,
     ".html": _html,

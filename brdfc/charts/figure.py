@@ -20,9 +20,9 @@ _PANELS = (
 )
 
 
-def rendered(points: Sequence[Point], title: str, kind: str) -> bytes:
-    """The picture as the bytes of a file of that kind ("svg" or "png")."""
-    return saved(lambda: _figure(points, title), kind, 9.0, frame=False)
+def rendered(points: Sequence[Point], title: str, kind: str, notes: Sequence[str] = ()) -> bytes:
+    """The picture as the bytes of a file of that kind ("svg" or "png"). notes: lines below it."""
+    return saved(lambda: _figure(points, title, notes), kind, 9.0, frame=False)
 
 
 def mark_id(error: str, index: int) -> str:
@@ -30,23 +30,42 @@ def mark_id(error: str, index: int) -> str:
     return f"{error}-{index}"
 
 
-def _figure(points: Sequence[Point], title: str) -> Figure:
-    figure = Figure(figsize=(11.5, 6.0), facecolor="white")
+def _figure(points: Sequence[Point], title: str, notes: Sequence[str]) -> Figure:
+    below = [line for note in notes for line in textwrap.wrap(note, 160, subsequent_indent="    ")]
+    height = 6.0 + 0.17 * len(below)
+    figure = Figure(figsize=(11.5, height), facecolor="white")
     lines = textwrap.wrap(title, 100, max_lines=2, placeholder=" …") or [""]
-    top = 0.86 - 0.04 * len(lines)
-    figure.subplots_adjust(left=0.06, right=0.985, top=top, bottom=0.18, wspace=0.17)
+    top = 1 - (0.14 + 0.04 * len(lines)) * 6.0 / height
+    bottom = (0.18 * 6.0 + 0.17 * len(below)) / height
+    figure.subplots_adjust(left=0.06, right=0.985, top=top, bottom=bottom, wspace=0.17)
     figure.text(
-        0.06, 0.975, "\n".join(lines), va="top", fontsize=13, fontweight="bold", parse_math=False
+        0.06,
+        1 - 0.15 / height,
+        "\n".join(lines),
+        va="top",
+        fontsize=13,
+        fontweight="bold",
+        parse_math=False,
     )
+    if below:
+        figure.text(
+            0.06, 0.12 / height, "\n".join(below), va="bottom", fontsize=8, parse_math=False
+        )
     count = f"{len(points)} candidate{'s' if len(points) > 1 else ''}. "
     better = "Cheaper is to the left, more accurate is down."
-    figure.text(0.06, 0.97 - 0.045 * len(lines), count + better, va="top", color="#444444")
+    under = 1 - (0.03 + 0.045 * len(lines)) * 6.0 / height
+    figure.text(0.06, under, count + better, va="top", color="#444444")
     for column, (error, heading) in enumerate(_PANELS, start=1):
         axes = figure.add_subplot(1, 2, column)
         axes.set_title(heading, loc="left", fontsize=10)
         _panel(axes, points, error)
     figure.legend(
-        handles=_legend(points), loc="lower center", ncols=8, frameon=False, handletextpad=0.4
+        handles=_legend(points),
+        loc="lower center",
+        bbox_to_anchor=(0.5, 0.17 * len(below) / height),
+        ncols=8,
+        frameon=False,
+        handletextpad=0.4,
     )
     return figure
 

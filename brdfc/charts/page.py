@@ -28,16 +28,22 @@ _HEADINGS = (
 _SHORT = 70
 
 
-def page(points: Sequence[Point], title: str) -> bytes:
-    """The page, in UTF-8."""
+def page(points: Sequence[Point], title: str, notes: Sequence[str] = ()) -> bytes:
+    """The page, in UTF-8. notes: a table of lines below the chart."""
     best = {error: front(points, error) for error in ("bits", "de")}
     text = Template(PAGE).substitute(
         title=escape(title),
         picture=_picture(points, title, best),
         headings="".join(f'<th scope="col">{heading}</th>' for heading in _HEADINGS),
         rows="\n".join(_row(point, best) for point in sorted(points, key=lambda p: p.price)),
+        notes=_notes(notes),
     )
     return text.encode()
+
+
+def _notes(notes: Sequence[str]) -> str:
+    rows = "\n".join(f"<tr><td>{escape(note)}</td></tr>" for note in notes)
+    return f"<table>\n<tbody>\n{rows}\n</tbody>\n</table>" if notes else ""
 
 
 def _picture(points: Sequence[Point], title: str, best: dict[str, tuple[Point, ...]]) -> str:

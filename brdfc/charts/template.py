@@ -47,6 +47,7 @@ $picture
 $rows
 </tbody>
 </table>
+$notes
 </div>
 </main>
 <script>

@@ -1,9 +1,15 @@
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
 import click
 
 from brdfc.cli.options import geometry_option, pairs
 from brdfc.cli.search_options import end_progress, search_options, shown_progress
+
+if TYPE_CHECKING:
+    from brdfc.sceneplan import Plan
 
 
 @click.command("chart")
@@ -21,6 +27,12 @@ from brdfc.cli.search_options import end_progress, search_options, shown_progres
     help="What to chart: forms (default); encodings: calculator against tables; storage: "
     "coefficients in fewer bits; engines: time measured here. Repeatable.",
 )
+@click.option(
+    "--scene",
+    metavar="FILE",
+    help="Chart what is left of the model in a scene (scene.toml), with a table of what is left "
+    "out.",
+)
 @geometry_option
 @search_options
 def command(
@@ -29,6 +41,7 @@ def command(
     fixed: tuple[str, ...],
     channels: tuple[str, ...],
     layers: tuple[str, ...],
+    scene: str | None,
     geometry: str | None,
     optimize: str,
     max_error: str | None,
@@ -45,6 +58,7 @@ def command(
     Example:
       brdfc chart ward -o ward.svg
       brdfc chart ward -o ward.html --effort 1000
+      brdfc chart ward -o scene.html --scene scene.toml
       brdfc chart ward -o tables.svg --layer encodings --set incident=40deg --set reflection=10deg
     """
     from brdfc.chartpoints import engine_points, form_points, rivals
@@ -54,7 +68,19 @@ def command(
     from brdfc.lang.load import load
 
     chart_kind(output)  # a chart that cannot be drawn is refused before the search
-    loaded, given = load(model, geometry), pairs(fixed, "--set")
+    wanted = layers or ("forms",)
+    planned, notes = None, []
+    if scene is not None:
+        if wanted != ("forms",):
+            raise click.UsageError("a scene's chart has the layer of forms only")
+        planned = _planned(model, scene, geometry, pairs(fixed, "--set"), channels)
+        loaded = planned.at.model
+        notes = [f"Left out for the scene: {line}" for line in planned.ledger()]
+        bound = planned.said(planned.fitted.lean.bound)
+        notes.append(f"Differences above are from what is left; from the whole formula that is {bound}.")
+    else:
+        loaded = load(model, geometry)
+    given = pairs(fixed, "--set")
     explored = explore_model(
         loaded,
         given,
@@ -63,19 +89,24 @@ def command(
         max_error=max_error,
         effort=effort,
         progress=shown_progress,
+        planned=planned,
     )
     end_progress()
-    wanted = layers or ("forms",)
-    others = rivals(loaded, given, channels, explored)
-    points = form_points(explored, others.problem.ranges) if "forms" in wanted else []
-    points += others.encodings() if "encodings" in wanted else []
-    points += others.storage() if "storage" in wanted else []
+    if planned is not None:
+        points = form_points(explored, planned.problem.ranges)
+    else:
+        others = rivals(loaded, given, channels, explored)
+        points = form_points(explored, others.problem.ranges) if "forms" in wanted else []
+        points += others.encodings() if "encodings" in wanted else []
+        points += others.storage() if "storage" in wanted else []
     if "engines" in wanted:
         compiled = compile_model(
             loaded, given, channels, optimize=optimize, max_error=max_error, effort=effort
         )
         points += engine_points(compiled, explored)
-    draw(points, output, f"{loaded.name}: speed against accuracy")
+    draw(points, output, f"{loaded.name}: speed against accuracy", notes)
+    for note in notes:
+        click.echo(note)
     click.echo(f"{len(points)} points" + ("" if explored.finished else ", more with --effort"))
     if explored.stopped:
         click.echo("note: the search ran out of time; these are the best so far", err=True)
@@ -88,3 +119,21 @@ def command(
                 f"  {p.price:6.0f} ns  {p.bits:5.2f} bits  {p.de:.1e} CIEDE2000  {rules}{chosen}"
             )
     click.echo(f"wrote {output}")
+
+
+def _planned(
+    model: str,
+    scene: str,
+    geometry: str | None,
+    fixed: Mapping[str, str],
+    channels: tuple[str, ...],
+) -> Plan:
+    from brdfc.colours import colours_of
+    from brdfc.lang.load import load
+    from brdfc.sceneplan import in_scene, plan_for
+    from brdfc.scenes.scene import read_scene
+
+    given = read_scene(scene)
+    loaded = load(model, geometry or given.geometry)
+    colours = colours_of(loaded, given.conditions, given.highlight)
+    return plan_for(in_scene(loaded, given, colours, fixed, channels))

@@ -23,6 +23,7 @@ _COMMANDS = {
     "export": "Write a model's formula for other tools, as FPCore.",
     "models": "List the model library, or show one model.",
     "plot": "Draw curves, lobes, strips of colours, lit bodies.",
+    "scene-chart": "Compare the models of the library in one scene.",
     "stability": "Show where a model fails in float32, and by how much.",
 }
 
@@ -34,7 +35,7 @@ class _Commands(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in _COMMANDS:
             return None
-        module = import_module(f"brdfc.cli.{cmd_name}_command")
+        module = import_module(f"brdfc.cli.{cmd_name.replace('-', '_')}_command")
         command = module.command
         assert isinstance(command, click.Command)
         return command
