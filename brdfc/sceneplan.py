@@ -23,7 +23,7 @@ from brdfc.scenes.fitting import Fitted, fit
 from brdfc.scenes.ranges import Narrowed, narrowed
 from brdfc.scenes.scene import Scene
 from brdfc.source.errors import SceneError, SelfCheckError
-from brdfc.symbolic.formula import Formula
+from brdfc.symbolic.formula import Formula, simpler_in
 from brdfc.symbolic.intervals import Interval, hull
 
 SHARE = 0.5
@@ -167,7 +167,8 @@ def plan_for(at: InScene) -> Plan:
     """Fit a model to the scene it is in."""
     problem = problem_of(at.roles, at.ready, at.colorimetry, at.declared)
     ranges, tolerance = at.narrowed.ranges, at.scene.tolerance
-    fitted = fit(problem, at.roles.channels, at.roles.variables, ranges, tolerance)
+    simpler = simpler_in(at.model, at.roles.constants)
+    fitted = fit(problem, at.roles.channels, at.roles.variables, ranges, tolerance, simpler)
     left = replace(at.roles, channels=fitted.channels, variables=fitted.variables)
     return Plan(
         at,

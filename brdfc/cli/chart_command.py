@@ -77,7 +77,9 @@ def command(
         loaded = planned.at.model
         notes = [f"Left out for the scene: {line}" for line in planned.ledger()]
         bound = planned.said(planned.fitted.lean.bound)
-        notes.append(f"Differences above are from what is left; from the whole formula that is {bound}.")
+        notes.append(
+            f"Differences above are from what is left; from the whole formula that is {bound}."
+        )
     else:
         loaded = load(model, geometry)
     given = pairs(fixed, "--set")

@@ -104,11 +104,16 @@ class _Builder:
         return ast.ImportName(span, str(name), str(alias or name))
 
     def _let(
-        self, span: Span, name: Token, parameters: Any, body: Any, description: Token | None
-    ) -> ast.Let:
+        self, span: Span, name: Token, parameters: Any, body: Any, description: Token | None,
+        simpler: Any,
+    ) -> ast.Let:  # fmt: skip
         taken = self._all(tuple(parameters.children)) if parameters else None
         place = self._place(name)
-        return ast.Let(span, str(name), place, taken, self.built(body), _text(description))
+        others = tuple(
+            ast.Name(self._place(token), str(token))
+            for token in (simpler.children if simpler else ())
+        )
+        return ast.Let(span, str(name), place, taken, self.built(body), _text(description), others)
 
     def _parameter(self, span: Span, name: Token, type_name: Token | None) -> ast.Parameter:
         return ast.Parameter(span, str(name), str(type_name) if type_name else None)

@@ -74,6 +74,7 @@ class _File:
         self._borrower.check_bindings(types)
         for definition in self._in_order():
             types.check(definition)
+        self._check_simpler(types)
         width = self._radiance_width(radiance, types)
         quantities = self._quantities(radiance)
         laws = tuple(self._laws(quantities, types))
@@ -171,6 +172,7 @@ class _File:
                     statement.description,
                     statement.name_span,
                     self._scope.symbols,
+                    tuple(other.name for other in statement.simpler),
                 )
                 self._scope.claim(definition.name, definition, definition.span)
                 self._definitions.append(definition)
@@ -202,6 +204,26 @@ class _File:
             else:
                 return [own[name] for name in order]
         return []
+
+    def _check_simpler(self, types: TypeChecker) -> None:
+        """What may stand for a definition takes the same arguments, and gives the same kind."""
+        for statement in (s for s in self._statements if isinstance(s, tree.Let)):
+            for other in statement.simpler:
+                own, found = (self._scope.symbols.get(n) for n in (statement.name, other.name))
+                if not isinstance(own, Definition):  # which is reported elsewhere
+                    continue
+                if not isinstance(found, Definition) or found is own:
+                    others = self._scope.symbols.keys() - {other.name}
+                    near = self._report.suggestion(other.name, others)
+                    message = f"there is no other 'let' of the name '{other.name}'"
+                    self._report.error(other.span, message, hint=near)
+                    continue
+                counts = [len(d.parameters) if d.parameters else 0 for d in (own, found)]
+                kinds = [types.check(d) for d in (own, found)]
+                if counts[0] != counts[1] or (None not in kinds and kinds[0] != kinds[1]):
+                    message = f"'{other.name}' cannot stand for '{own.name}'"
+                    notes = ((found.span, "it takes other arguments, or gives another type"),)
+                    self._report.error(other.span, message, notes=notes)
 
     def _radiance(self, header: tree.Header | None) -> Definition | None:
         """The one radiance of a model."""

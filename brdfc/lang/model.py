@@ -63,7 +63,8 @@ class Quantity:
 class Definition:
     """A `let`, a user function, or a whole model's radiance under its name.
 
-    parameters is None for a plain name. scope holds what the names in body refer to, besides
+    parameters is None for a plain name. simpler: names in its scope of definitions that are nearly
+    the same and cheaper. scope holds what the names in body refer to, besides
     parameters, `pi` and the built-in functions; it is shared by all definitions of a file.
     """
 
@@ -73,6 +74,7 @@ class Definition:
     description: str
     span: Span
     scope: Mapping[str, Symbol] = field(repr=False, compare=False)
+    simpler: tuple[str, ...] = ()
 
 
 Symbol = Quantity | Definition

@@ -182,7 +182,8 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Let:
-    """`let name = body` (parameters is None) or `let name(parameters) = body`."""
+    """`let name = body` (parameters is None) or `let name(parameters) = body`; simpler: names of
+    what is nearly the same and cheaper."""
 
     span: Span
     name: str
@@ -190,6 +191,7 @@ class Let:
     parameters: tuple[Parameter, ...] | None
     body: Expr
     description: str
+    simpler: tuple[Name, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,8 @@ STATEMENTS = (
 """The words that begin a statement."""
 
 CONTINUATIONS = (
-    "cite", "note", "highlight", "in", "as", "with", "where", "else", "and", "or", "not", "within"
+    "cite", "note", "highlight", "in", "as", "with", "where", "else", "and", "or", "not", "within",
+    "simpler",
 )  # fmt: skip
 """The words that stand within one."""
 

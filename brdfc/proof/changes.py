@@ -186,9 +186,9 @@ TWO, HALF = number(2.0), number(0.5)
 
 
 def _mul(_value: Varying, a: Argument, b: Argument) -> Varying:
-    one = (a[0] + a[1]) * b[1] + b[0] * a[1]
-    other = (b[0] + b[1]) * a[1] + a[0] * b[1]
-    return one.within(other.value)
+    if a[1] is NONE or b[1] is NONE:
+        return b[0] * a[1] if b[1] is NONE else a[0] * b[1]
+    return (a[0] + a[1]) * b[1] + b[0] * a[1]
 
 
 def _div(value: Varying, a: Argument, b: Argument) -> Varying:

@@ -29,9 +29,9 @@ SPREAD = 256
 STEPS = 12
 NEAR = (-0.2, -0.05, -0.01, 0.01, 0.05, 0.2)
 """Steps from the worst point seen, at most, and how far each goes, in parts of a range."""
-SOME = 300
+SOME = 150
 """Boxes from which on a proof is given up that would not end: the bound falls at best with the
-power 2/3 of the boxes."""
+power 4/5 of the boxes."""
 TIGHT = 1.3
 """A bound so many times what was seen is not worth more work."""
 
@@ -149,7 +149,7 @@ def bound(pair: Pair, enough: float, budget: int, polish: int = 0, slack: float 
         while search.seen <= enough and search.done < boxes:
             most = search.most
             above = int((search.upper > goal()).sum())
-            hopeless = search.done > SOME and search.done * (most / enough) ** 1.5 > 2 * boxes
+            hopeless = search.done > SOME and search.done * (most / enough) ** 1.25 > 2 * boxes
             if not above or (most > enough and hopeless):
                 break
             search.halve(min(BATCH, above))

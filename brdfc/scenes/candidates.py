@@ -92,6 +92,33 @@ def replacements(formula: Expression, known: Known) -> Iterator[Replacement]:
             yield from (r for r in kind(e, known) if r.by is not e)
 
 
+_WORK = {"exp": 4, "ln": 4, "log10": 4, "sin": 4, "cos": 4, "tan": 5, "asin": 5, "acos": 5}
+_WORK |= {"atan": 5, "atan2": 5, "pow": 3, "cbrt": 4, "div": 2, "sqrt": 2}
+_WORK |= {"const": 0, "pi": 0, "quantity": 0, "vector": 0, "component": 0}
+
+
+def work_in(formula: Expression, known: Known) -> int:
+    """Roughly how much there is to do for a pixel: operations on what is not constant, dear ones
+    several times."""
+    return sum(
+        _WORK.get(e.operator, 1) + e.width - 1
+        for e in walk(formula)
+        if e.arguments and known.quantities(e) and not _idle(e)
+    )
+
+
+def _idle(e: Expression) -> bool:
+    """Whether nothing is done: x*1, x/1, x + 0, a choice between two that are the same."""
+    match e.operator:
+        case "mul" | "div":
+            return ONE in e.arguments
+        case "add" | "sub":
+            return ZERO in e.arguments
+        case "where":
+            return e.arguments[1] is e.arguments[2]
+    return e.operator in ("vector", "component")
+
+
 def single(value: float) -> Expression:
     """A number as a program holds it."""
     return const(Fraction(float(np.float32(value))))

@@ -16,11 +16,15 @@ from brdfc.lang.model import Quantity
 from brdfc.lang.types import TYPES
 from brdfc.scenes.candidates import Replacement
 from brdfc.scenes.omissions import Lean, leave_out
+from brdfc.symbolic.build import Simpler
+from brdfc.symbolic.constants import fold_constants
 from brdfc.symbolic.expression import Expression, describe, quantity, substituted, walk
 from brdfc.symbolic.formula import Formula, simplest
 from brdfc.symbolic.guards import guarded
 from brdfc.symbolic.intervals import Interval
 from brdfc.symbolic.ranges import Ranges
+from brdfc.symbolic.rewrite import rewrite
+from brdfc.symbolic.simplify import simplified
 
 RESERVED = 0.1
 """Of a tolerance: kept for the rounding of the program; at least ROUNDING."""
@@ -57,12 +61,13 @@ def fit(
     variables: Sequence[Quantity],
     ranges: Mapping[str, Sequence[Interval]],
     tolerance: float,
-    simpler: Sequence[Replacement] = (),
+    simpler: Sequence[Simpler] = (),
 ) -> Fitted:
     """Fit a problem, of a scene's formula and quantities, to a tolerance.
 
     problem: whose domain is the scene's, and whose guards are for the ranges that the model
-    declares. ranges: of components, where the scene knows more than the domain.
+    declares. ranges: of components, where the scene knows more than the domain. simpler: what the
+    model's definitions say is simpler than parts of the exact formula.
     """
     formula = problem.formula
     domain = {
@@ -73,14 +78,18 @@ def fit(
     def price(e: Expression) -> float:
         return estimated_price(problem.graph(simplest(e, formula.domain)))
 
+    def light(e: Expression) -> Expression:
+        # Not `simplest`: products in another order would hide which parts were replaced.
+        return rewrite(fold_constants(e), Ranges(formula.domain), simplified)
+
     lean = leave_out(
-        formula.simple,
+        light(formula.exact),
         domain,
         problem.colorimetry,
         tolerance - reserved(tolerance),
         price,
         _alike(channels),
-        simpler,
+        [Replacement(light(s.part), light(s.by), s.words) for s in simpler],
     )
     tidy = simplest(lean.formula, formula.domain)
     read = _read(tidy)

@@ -16,7 +16,7 @@ import numpy as np
 from brdfc.colour.colorimetry import Colorimetry
 from brdfc.proof.pair import Pair
 from brdfc.proof.subdivide import SOME, Bound, bound, spread
-from brdfc.scenes.candidates import Known, Replacement, replacements
+from brdfc.scenes.candidates import Known, Replacement, replacements, work_in
 from brdfc.symbolic.evaluate import evaluate_parts
 from brdfc.symbolic.expression import Expression, substituted
 from brdfc.symbolic.intervals import Interval
@@ -27,14 +27,16 @@ POINTS = 384
 """Points of the domain at which a replacement is tried before a proof is."""
 BOXES = 3_000
 """That one proof may take, before the part is kept."""
-ALL_BOXES = 16_000
+ALL_BOXES = 14_000
 """That all proofs of a scene may take."""
-FINAL_BOXES = 10_000
+FINAL_BOXES = 7_000
 """That the bound on the whole may take, beyond."""
-POLISH = 500
+POLISH = 300
 """That may follow a proof, for a bound nearer to what was seen."""
 PASSES = 3
-MISSES = 6
+PRICED = 48
+"""Replacements whose saving is found exactly, in a pass; a rough count of operations chooses."""
+MISSES = 10
 """Proofs that do not succeed, after which a pass ends."""
 LIKELY = 0.8
 """A replacement that was seen to come nearer to the limit than this is not worth a proof."""
@@ -135,14 +137,18 @@ class _Work:
     def once(self) -> bool:
         """Try everything that may be left out of the lean formula; whether something was."""
         known = Known(self.domain, self.values, self.alike)
-        found = [*self.simpler, *replacements(self.lean, known)]
-        tried = []
-        for r in found:
-            change = self.seen(substituted(self.lean, {r.part: r.by}))
-            if change <= LIKELY * self.limit:
-                saved = self.cost - self.priced(substituted(self.lean, {r.part: r.by}))
-                if saved >= _WORTH:
-                    tried.append((saved / (change + _FREE * self.limit), r))
+        likely = []
+        before = work_in(self.lean, known)
+        for r in (*self.simpler, *replacements(self.lean, known)):
+            lean = substituted(self.lean, {r.part: r.by})
+            less = before - work_in(lean, known)
+            if less > 0 and (change := self.seen(lean)) <= LIKELY * self.limit:
+                weight = change + _FREE * self.limit
+                likely.append((less / weight, weight, r, lean))
+        likely.sort(key=lambda t: -t[0])
+        tried = [
+            ((self.cost - self.priced(lean)) / weight, r) for _, weight, r, lean in likely[:PRICED]
+        ]
         tried.sort(key=lambda t: -t[0])
         made = misses = 0
         for _, r in tried:

@@ -58,17 +58,38 @@ def build(
     return _Builder(values, free, leave).definition(definition)
 
 
+@dataclass(frozen=True)
+class Simpler:
+    """A part of a formula that a definition gives, and what another would give in its place."""
+
+    part: Expression
+    by: Expression
+    words: str
+
+
+def simpler_parts(
+    definition: Definition, values: Mapping[str, tuple[float, ...]], leave: Collection[str] = ()
+) -> tuple[Simpler, ...]:
+    """What `simpler` clauses offer for the parts of a definition; arguments as for build."""
+    builder = _Builder(values, False, leave, offers=[])
+    builder.definition(definition)
+    return tuple(builder.offers or ())
+
+
 @dataclass
 class _Builder:
+    """offers: where what is simpler is collected, or None."""
+
     values: Mapping[str, tuple[float, ...]]
     free: bool
     leave: Collection[str]
+    offers: list[Simpler] | None = None
     done: dict[int, Expression] = field(default_factory=dict)
     steps: int = 0
 
     def definition(self, definition: Definition) -> Expression:
         if id(definition) not in self.done:
-            self.done[id(definition)] = self.expression(definition.body, definition.scope, {})
+            self.done[id(definition)] = self.called(definition, [])
         return self.done[id(definition)]
 
     def expression(
@@ -103,11 +124,25 @@ class _Builder:
                 given = [self.expression(a, scope, local) for a in arguments]
                 user = scope.get(function)
                 if isinstance(user, Definition) and user.parameters is not None:
-                    names = [parameter.name for parameter in user.parameters]
-                    inner = dict(zip(names, given, strict=True))
-                    return self.expression(user.body, user.scope, inner)
+                    return self.called(user, given)
                 return _builtin(function, given)
         raise TypeError(f"unknown node {node!r}")
+
+    def called(self, definition: Definition, given: list[Expression]) -> Expression:
+        """The body of a definition with these arguments."""
+        names = [parameter.name for parameter in definition.parameters or ()]
+        local = dict(zip(names, given, strict=True))
+        value = self.expression(definition.body, definition.scope, local)
+        offers = self.offers
+        for name in definition.simpler if offers is not None else ():
+            other = definition.scope[name]
+            assert isinstance(other, Definition)
+            assert offers is not None
+            self.offers = None  # of what is simpler itself, nothing is offered
+            by = self.called(other, given)
+            self.offers = offers
+            offers.append(Simpler(value, by, f"{definition.name}: {name} in its place"))
+        return value
 
     def name(
         self, name: str, scope: Mapping[str, Symbol], local: Mapping[str, Expression]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from brdfc.lang.model import Model, Role
-from brdfc.symbolic.build import build
+from brdfc.symbolic.build import Simpler, build, simpler_parts
 from brdfc.symbolic.constants import fold_constants
 from brdfc.symbolic.expression import Expression, constant_vector, quantity, substituted
 from brdfc.symbolic.guards import Guard, guarded
@@ -71,6 +71,14 @@ def formula(
         if n in values or q.role is Role.CONSTANT
     }
     return Formula(substituted(written, fixed), domain(left), white)
+
+
+def simpler_in(model: Model, values: Mapping[str, tuple[float, ...]]) -> tuple[Simpler, ...]:
+    """What the model's own definitions, and those it imports, say is simpler than parts of the
+    formula; values: as for formula. Parts that read colours under a white are not among them."""
+    colours = {q.name for q in model.quantities if q.type.is_colour}
+    plain = {n: v for n, v in values.items() if n not in colours}
+    return simpler_parts(model.radiance, plain, leave=colours)
 
 
 def simplest(exact: Expression, domain: Mapping[str, Interval]) -> Expression:
