@@ -23,6 +23,7 @@ figures: .venv/installed
 	$(BIN)/python benchmarks/forms.py
 	$(BIN)/python benchmarks/library.py
 	$(BIN)/python benchmarks/stability.py
+	$(BIN)/python benchmarks/scenes.py
 
 golden: .venv/installed
 	$(BIN)/pytest --update-golden tests
