@@ -26,14 +26,16 @@ from forms import EQUAL, literal
 
 import brdfc
 from brdfc.calc.price import operations
+from brdfc.calc.program import Program
+from brdfc.calc.text import assemble
 from brdfc.cmm import reference
+from brdfc.cmm.transforms import transform_variables
 from brdfc.compiled import Compiled
 from brdfc.compiler import compile_model
 from brdfc.icc.profile import Profile
 from brdfc.lang.load import library, load
 from brdfc.lang.model import Quantity
 from brdfc.profiles.content import Content
-from brdfc.profiles.metadata import describe, describe_constants
 from brdfc.profiles.multiplex import profile_pair
 from brdfc.sceneplan import InScene
 from brdfc.scenes.scene import Scene
@@ -48,6 +50,8 @@ CYAN: dict[str, Any] = {
     "m": "0.08..0.3",
 }
 MATT: dict[str, Any] = {**CYAN, "m": "0.08..0.1"}
+NOTHING = "{ 0 0 0 out[0,3] }"
+"""What is below every ratio: the engine's own work for a pixel."""
 PIXELS, ROUNDS, PASSES = 20_000, 9, 3
 
 # ---------------------------------------------------------------- the paper's cyan
@@ -75,12 +79,15 @@ def cyan() -> None:
         program = literal(model)
         names = tuple(n for q in model.quantities[:3] for n in q.component_names)
         pair = profile_pair(Content("literal", program, names, (0.0,) * len(names)))
+        counts = {"literal": operations(program)}
         paths = {"literal": pair.save(Path(folder) / "literal_mvis.icc")}
         paths |= {
             n: c.save(Path(folder) / f"{i}_mvis.icc") for i, (n, c) in enumerate(made.items())
         }
-        counts = {"literal": operations(program)}
         counts |= {n: operations(c.program) for n, c in made.items()}
+        nothing = Content("nothing", Program(1, 3, assemble(NOTHING)), ("ks",), (0.0,))
+        paths["nothing"] = profile_pair(nothing).save(Path(folder) / "nothing_mvis.icc")
+        counts["nothing"] = operations(nothing.program)
         least = _timed(paths, {n: _pixels(n, made) for n in paths})
     for name, (theirs, ours) in least.items():
         plan = made[name].plan if name in made else None
@@ -99,7 +106,8 @@ def _pixels(name: str, made: dict[str, Compiled]) -> np.ndarray:
     low, high = ([0.1, 0.15, 0.35, 0.02, 0.08], [0.2, 0.28, 0.6, 0.1, 0.1])
     pixels = np.random.default_rng(1).uniform(low, high, (PIXELS, 5)).astype(np.float32)
     names = ["Rdx", "Rdy", "Rdz", "ks", "m"]
-    channels = made[name].roles.channel_names if name in made else tuple(names)
+    others = {"literal": tuple(names), "nothing": ("ks",)}
+    channels = made[name].roles.channel_names if name in made else others[name]
     return np.ascontiguousarray(pixels[:, [names.index(n) for n in channels]])
 
 
@@ -123,9 +131,8 @@ def _timed(
 
 def _known(mvis: Path, variables: dict[str, float]) -> dict[str, float]:
     """The variables that a profile has."""
-    known = {d.signature for d in describe(Profile.load(mvis), "env")} or set(variables)
-    fixed = describe_constants(Profile.load(mvis))
-    return {} if "incident" in fixed else {n: v for n, v in variables.items() if n in known}
+    known = {signature for signature, _ in transform_variables(Profile.load(mvis), "M2B0")}
+    return {n: v for n, v in variables.items() if n in known}
 
 
 # ---------------------------------------------------------------- samples of a scene

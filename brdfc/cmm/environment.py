@@ -78,7 +78,8 @@ def _in_range(
     rounded = float(np.float32(value))
     if described is None or extrapolate:
         return rounded
-    if not np.float32(described.low) <= rounded <= np.float32(described.high):
+    low, high = described.reach
+    if not low <= rounded <= high:
         shown = value_text((value,), described.type)
         raise ValueGivenError(
             f"{name}={shown} lies outside the profile's range {described.range_text}",

@@ -131,7 +131,7 @@ def _count_outside(link: Link, band: Band, applied: Applied) -> None:
         width = described.type.value.width
         values = band[..., start : start + width]
         start += width
-        low, high = np.float32(described.low), np.float32(described.high)
+        low, high = described.reach
         outside = int(((values < low) | (values > high)).sum())
         if outside:
             applied.outside[described.name] = applied.outside.get(described.name, 0) + outside

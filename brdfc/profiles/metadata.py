@@ -26,6 +26,9 @@ from brdfc.lang.types import TYPES, DeclaredType
 from brdfc.lang.values import declared_type, parse_value
 from brdfc.source.errors import ValueGivenError
 
+_TEXT_LOSES = 2.0**-22
+"""Relative: nine digits of degrees hold an angle to less than two units of a float32."""
+
 
 @dataclass(frozen=True)
 class Described:
@@ -50,6 +53,12 @@ class Described:
     @property
     def range_text(self) -> str:
         return range_text(self.low, self.high, self.type)
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """The ends of its range, with what their text may have lost of a float32."""
+        slack = _TEXT_LOSES * max(abs(self.low), abs(self.high))
+        return self.low - slack, self.high + slack
 
 
 def value_text(values: Sequence[float], declared: DeclaredType, digits: int = 9) -> str:
