@@ -153,8 +153,10 @@ class Plan:
 
     @property
     def unread(self) -> tuple[Quantity, ...]:
-        """The variables that nothing reads any more, with their ranges in the scene."""
-        return tuple(q for q in self.at.roles.variables if q.name in self.fitted.unread)
+        """The quantities that nothing reads any more, with their ranges in the scene."""
+        every = self.at.roles.channels + self.at.roles.variables
+        left = {n for q in (*self.roles.channels, *self.roles.variables) for n in q.component_names}
+        return tuple(q for q in every if not left & {q.name, *q.component_names})
 
     def said(self, bound: Bound) -> str:
         """A bound in words: `at most 0.034, seen 0.033 at ks=0.1 m=0.2`."""

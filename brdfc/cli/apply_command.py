@@ -12,6 +12,7 @@ from brdfc.cli.options import (
     pairs,
     row_progress,
     warn_of_defaults,
+    warn_of_display,
 )
 from brdfc.cli.search_options import end_progress, shown_progress
 
@@ -67,6 +68,8 @@ def command(
         raise click.UsageError("give the profiles first, then the image")
     refuse_same([output], files)
     if len(profiles) == 1 and not is_profile(profiles[0]):
+        if how["extrapolate"]:
+            raise click.UsageError("--extrapolate is for profiles: a model is compiled for the run")
         saved = _Compiled(profiles[0], image, environment, scene, tolerance, geometry, how["to"])
         chosen = rendered([saved.compiled.mid, saved.compiled.mvis], environment, **how)
     else:
@@ -75,14 +78,16 @@ def command(
         saved = None
         chosen = rendered(profiles, environment, **how)
     warn_of_defaults(chosen.link)
+    warn_of_display(chosen)
     run = ", ".join(environment) or "default angles"
     applied = apply_to_tiff(chosen, image, output, run, row_progress())
     for name, count in applied.outside.items():
-        click.echo(
-            f"note: {count:,} samples of '{name}' lie outside the range the model declares; "
-            "their colours mean nothing",
-            err=True,
+        said = (
+            "the profile was compiled for; their colours may be farther off"
+            if chosen.link.samples
+            else "the model declares; their colours mean nothing"
         )
+        click.echo(f"note: {count:,} samples of '{name}' lie outside the range {said}", err=True)
     if applied.clipped:
         click.echo(
             f"note: {applied.clipped:,} pixels lie outside what sRGB can show; each component is "
@@ -117,8 +122,7 @@ class _Compiled:
         given = read_scene(scene) if scene is not None else Scene("--env")
         if tolerance is not None:
             given = replace(given, tolerance=checked_tolerance(tolerance, "--tolerance"))
-        if to.lower() == "srgb":
-            given = replace(given, output="sRGB")
+        given = replace(given, output="sRGB" if to.lower() == "srgb" else "XYZ")
         self.model = load(name, geometry or given.geometry)
         self.compiled, self.took = compile_for_image(
             self.model, image, pairs(environment, "--env"), given, shown_progress
@@ -146,7 +150,9 @@ class _Compiled:
             f"{compiled.price:.0f} ns a pixel on the reference engine by the price table, and "
             f"{general.price:.0f} with the general profile"
         )
+        saved = found.general - found.scene
+        told = f"{saved:.3g} s saved" if saved > 0 else "nothing saved"
         click.echo(
-            f"{found.scene:.3g} s here, {found.general:.3g} with the general profile: "
-            f"{found.general - found.scene:.3g} s saved, for {found.compiling:.2g} s of compiling"
+            f"{found.scene:.3g} s here, {found.general:.3g} with the general profile: {told}, for "
+            f"{found.compiling:.2g} s of compiling"
         )

@@ -6,7 +6,12 @@ from typing import Any
 import click
 
 from brdfc.cli.colour_options import rendered, rendering_options
-from brdfc.cli.options import environment_option, extrapolate_option, warn_of_defaults
+from brdfc.cli.options import (
+    environment_option,
+    extrapolate_option,
+    warn_of_defaults,
+    warn_of_display,
+)
 
 
 @click.command("eval")
@@ -43,6 +48,7 @@ def command(
     chosen = rendered(profiles, environment, **how)
     link = chosen.link
     warn_of_defaults(link)
+    warn_of_display(chosen)
     values = chosen.apply([_numbers(pixel, link.channels) for pixel in pixels])
     if as_json:
         rows = [[float(f"{v:.9g}") for v in row] for row in values.tolist()]

@@ -11,6 +11,7 @@ import click
 
 if TYPE_CHECKING:
     from brdfc.cmm.link import Link
+    from brdfc.cmm.rendering import Rendering
     from brdfc.icc.profile import Profile
 
 
@@ -119,6 +120,21 @@ def connected(
         declared = types.get(name) or TYPES["angle" if text[-3:] in ("deg", "rad") else "number"]
         values[name] = parse_value(text, declared, name)[0]
     return connect(*loaded, env=values, transform=transform, extrapolate=extrapolate)
+
+
+def warn_of_display(chosen: Rendering) -> None:
+    """Say that a profile was compiled for what a display shows, where something else is wanted."""
+    from brdfc.cmm.rendering import Target
+    from brdfc.icc.types import Dictionary
+
+    meta = chosen.link.profile.tags.get("meta")
+    for_display = isinstance(meta, Dictionary) and meta.get("scene.output") == "sRGB"
+    if for_display and chosen.to is not Target.SRGB:
+        click.echo(
+            "note: the profile was compiled for sRGB; what that clips is not computed, so other "
+            "colours than --to sRGB gives mean nothing there",
+            err=True,
+        )
 
 
 def warn_of_defaults(link: Link) -> None:

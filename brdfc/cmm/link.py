@@ -8,7 +8,7 @@ angles among its channels, needs no other.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,9 +26,11 @@ from brdfc.cmm.transforms import (
 )
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import Dictionary, NumberArray, Pipeline, Utf8Array
+from brdfc.lang.types import TYPES
+from brdfc.lang.values import parse_value
 from brdfc.profiles.brdf_function import ANGLES
-from brdfc.profiles.metadata import Described, describe
-from brdfc.source.errors import LinkError
+from brdfc.profiles.metadata import Described, describe, describe_constants
+from brdfc.source.errors import LinkError, ValueGivenError
 
 ProfileOrPath = Profile | str | Path
 
@@ -152,7 +154,7 @@ def _pair(
         transform,
         tuple(n for n, index in zip(wanted, sources, strict=True) if index is None),
         environment_of(destination, transform, env, extrapolate),
-        describe(source, "channel"),
+        (*describe(source, "channel"), *describe(source, "unread"), *_fixed(source)),
         scene_samples(source),
     )
 
@@ -199,6 +201,19 @@ def channel_defaults(link: Link) -> tuple[float, ...]:
         for name, value in zip(d.component_names, d.default, strict=True)
     }
     return tuple(known.get(name, 0.0) for name in link.channels)
+
+
+def _fixed(profile: Profile) -> Iterator[Described]:
+    """The quantities that a profile for a scene was compiled for one value of."""
+    if not scene_samples(profile):
+        return
+    for name, text in describe_constants(profile).items():
+        declared = TYPES["angle" if text.endswith("deg") else "number"]
+        try:
+            (value,) = parse_value(text, declared, name)
+        except ValueGivenError:  # a colour, or a text that makes no sense
+            continue
+        yield Described(name, declared, value, value, (value,), "", "")
 
 
 def scene_samples(profile: Profile) -> tuple[str, ...]:

@@ -59,9 +59,9 @@ def apply_to_tiff(
         def bands() -> Iterator[NDArray[Any]]:
             top = 0
             for whole in image.bands():
-                band = whole if columns == _ALL else whole[..., columns]
+                band = whole[..., columns]
                 faults.count(band, top)
-                _count_outside(link, band, applied)
+                _count_outside(link, whole, applied)
                 if faults.total:  # the rest is only counted: nothing will be written
                     yield np.zeros((*band.shape[:2], rendering.samples), rendering.dtype)
                 else:
@@ -88,12 +88,11 @@ _ALL = slice(None)
 
 
 def _columns(link: Link, count: int) -> slice | list[int] | None:
-    """The samples of an image that a link takes: all, or those it was compiled to need of it."""
-    if count == len(link.channels):
-        return _ALL
-    if count != len(link.samples) or not set(link.channels) <= set(link.samples):
-        return None
-    return [link.samples.index(name) for name in link.channels]
+    """The samples of an image that a link takes: those of the image it was compiled for, by their
+    names, where there are as many; else all."""
+    if count == len(link.samples) and set(link.channels) <= set(link.samples):
+        return [link.samples.index(name) for name in link.channels]
+    return _ALL if count == len(link.channels) else None
 
 
 _NAMES = {
@@ -125,12 +124,12 @@ class _Faults:
 
 
 def _count_outside(link: Link, band: Band, applied: Applied) -> None:
-    """Samples outside what the model declares: it says nothing about them, so the user is told."""
-    start = 0
+    """Samples outside what the profile states, also of those it does not read: it says nothing
+    about them, so the user is told."""
+    given = link.samples if band.shape[-1] == len(link.samples) else link.channels
     for described in link.described:
-        width = described.type.value.width
-        values = band[..., start : start + width]
-        start += width
+        places = [given.index(n) for n in described.component_names if n in given]
+        values = band[..., places]
         low, high = described.reach
         outside = int(((values < low) | (values > high)).sum())
         if outside:

@@ -58,7 +58,7 @@ def _dimmed(
 ) -> tuple[Sequence[Varying], Sequence[Varying]]:
     """What is more than BRIGHTEST times white is compared at that (Colorimetry.difference)."""
     tristimulus = signals[:3]
-    if not (np.maximum.reduce([p.value.size for p in tristimulus]) > BRIGHTEST).any():
+    if not any((p.value.size > BRIGHTEST).any() for p in tristimulus):
         return signals, changes
     y, x, z = map(of.absolute, tristimulus)
     most = of.larger(of.larger(x, y), z)

@@ -95,7 +95,7 @@ class Changes:
         match first.operator:
             case "neg":
                 return shares[0]
-            case "mul" if first.arguments[0] is first.arguments[1]:
+            case "mul" if _is_square(first) and _is_square(second):
                 return shares[0] * (TWO + shares[0])
             case "mul":
                 return shares[0] + shares[1] + shares[0] * shares[1]
@@ -159,6 +159,10 @@ class Changes:
 
     def _argument(self, a: Expression, b: Expression) -> Argument:
         return self.values.of(a), self.of(a, b)
+
+
+def _is_square(e: Expression) -> bool:
+    return e.arguments[0] is e.arguments[1]
 
 
 def _alike(first: Expression, second: Expression) -> bool:
@@ -237,9 +241,10 @@ def _any_slope(change: Varying) -> Enclosure | None:
 
 
 def _power(value: Varying, a: Argument, b: Argument) -> Varying:
-    """x^y = exp(y ln x)."""
+    """x^y = exp(y ln x), where x is above 0."""
     logarithm = of.ln(a[0])
-    return _exp(value, (value, _mul(value, (logarithm, _ln(logarithm, a)), b)))
+    changed = _exp(value, (value, _mul(value, (logarithm, _ln(logarithm, a)), b)))
+    return changed.where(a[0].low > 0)
 
 
 def _whole_power(a: Varying, change: Varying, exponent: int) -> Varying:
@@ -256,7 +261,9 @@ def _whole_power(a: Varying, change: Varying, exponent: int) -> Varying:
         of.scaled(a.slopes, mul(times, changed(exponent - 1))),
         of.scaled(change.slopes, mul(times, on.whole_power(moved, exponent - 1))),
     )
-    return Varying(changed(exponent), slopes)
+    found = Varying(changed(exponent), slopes)
+    # Across its pole a negative power has no mean value.
+    return found if exponent > 0 else found.where((between.low > 0) | (between.high < 0))
 
 
 def _between(name: str) -> Callable[..., Varying]:

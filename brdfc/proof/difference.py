@@ -30,12 +30,11 @@ ROUNDING = 1e-9
 
 
 def most_difference(colour: Seen) -> Array:
-    """(boxes,): no colour in a box differs by more from what it changes to. Infinite where nothing
-    is known."""
+    """(boxes,) or (1,): no colour in a box differs by more from what it changes to. Infinite where
+    nothing is known."""
     lightness, a, b, dl, da, db = (part.value for part in colour)
     with np.errstate(all="ignore"):
-        found = _difference(lightness, a, b, dl, da, db)
-    found = np.broadcast_to(found, np.broadcast_shapes(*(e.low.shape for e in (a, dl))))[..., 0]
+        found = _difference(lightness, a, b, dl, da, db)[..., 0]
     return np.where(np.isnan(found), np.inf, found)
 
 

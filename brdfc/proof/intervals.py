@@ -23,6 +23,7 @@ Mask = NDArray[np.bool_]
 WIDER = 2.0**-50
 """Relative: four units in the last place of a float64."""
 _TURN = 2 * np.pi
+_GREATEST = float(np.finfo(np.float64).max)
 
 
 class Enclosure(NamedTuple):
@@ -55,6 +56,9 @@ def exactly(value: float) -> Enclosure:
 def number(value: Fraction) -> Enclosure:
     """A rational number."""
     held = nearest(value)
+    if not np.isfinite(held):
+        ends = np.array([[_GREATEST]]), np.array([[np.inf]])
+        return Enclosure(*ends) if held > 0 else neg(Enclosure(*ends))
     return exactly(held) if value == Fraction(held) else enclosure(*exactly(held))
 
 
@@ -111,8 +115,8 @@ def square(a: Enclosure) -> Enclosure:
 
 
 def _from_zero(a: Enclosure) -> Enclosure:
-    """What is never negative."""
-    return Enclosure(np.fmax(a.low, 0.0), np.fmax(a.high, 0.0))
+    """What is never negative; what is not known stays so."""
+    return Enclosure(np.fmax(a.low, 0.0), np.maximum(a.high, 0.0))
 
 
 def reciprocal(a: Enclosure) -> Enclosure:
@@ -143,17 +147,22 @@ _SMALL, _LARGE = 1e-300, 1e300
 def exp(a: Enclosure) -> Enclosure:
     """Never 0 and never infinite, as products of what underflows and what overflows may be
     anything."""
-    low, high = np.fmin(np.exp(a.low), _LARGE), np.fmax(np.exp(a.high), _SMALL)
+    return _in_reach(np.exp(a.low), np.exp(a.high))
+
+
+def _in_reach(low: Array, high: Array) -> Enclosure:
+    """The bounds of what is above 0, where either may have left float64's range."""
+    low, high = np.minimum(low, _LARGE), np.maximum(high, _SMALL)
     return enclosure(np.where(low < _SMALL, 0.0, low), high)
 
 
 def sqrt(a: Enclosure) -> Enclosure:
-    root = enclosure(np.sqrt(np.fmax(a.low, 0.0)), np.sqrt(np.fmax(a.high, 0.0)))
+    root = enclosure(np.sqrt(np.fmax(a.low, 0.0)), np.sqrt(np.maximum(a.high, 0.0)))
     return _from_zero(root)
 
 
 def ln(a: Enclosure) -> Enclosure:
-    return enclosure(np.log(np.fmax(a.low, 0.0)), np.log(np.fmax(a.high, 0.0)))
+    return enclosure(np.log(np.fmax(a.low, 0.0)), np.log(np.maximum(a.high, 0.0)))
 
 
 def _holds(a: Enclosure, offset: float) -> Mask:
@@ -223,10 +232,17 @@ def whole_power(a: Enclosure, exponent: int) -> Enclosure:
 
 
 def power(a: Enclosure, b: Enclosure) -> Enclosure:
-    """x to any exponent, x not negative: monotone in each, so bounds are at corners."""
-    bases = [np.maximum(end, 0.0) for end in a]
+    """x to any exponent, x not negative: monotone in each, so bounds are at corners. Of a negative
+    x nothing is known: it has a value for some exponents."""
+    bases = [np.where(end < 0, np.nan, end) for end in a]
     corners = [np.power(x, y) for x in bases for y in b]
-    return _from_zero(enclosure(np.fmin.reduce(corners), np.maximum.reduce(corners)))
+    found = _in_reach(np.minimum.reduce(corners), np.maximum.reduce(corners))
+    # x^0 is 1 for every x, 0 too; the corners of a range of exponents around 0 miss that at x = 0.
+    zero = (b.low <= 0) & (b.high >= 0)
+    return Enclosure(
+        np.where(zero, np.minimum(found.low, 1.0), found.low),
+        np.where(zero, np.maximum(found.high, 1.0), found.high),
+    )
 
 
 def absolute(a: Enclosure) -> Enclosure:

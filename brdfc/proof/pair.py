@@ -89,13 +89,15 @@ class Pair:
         return seen([changes.values.of(a) for a in before], moved)
 
     def differences(self, points: Array) -> Array:
-        """At points (points, axes), (points,); 0 where one of them is undefined."""
+        """At points (points, axes), (points,); 0 where the first is undefined, infinite where only
+        the second is."""
         named = self.by_name(points)
         one, other = (evaluate(e, named) for e in (self.second, self.first))
         with np.errstate(all="ignore"):
             found = self.colorimetry.difference(one, other)
         found = np.broadcast_to(found, (len(points),))
-        return np.where(np.isfinite(found), found, 0.0)
+        known = np.broadcast_to(np.isfinite(other).all(axis=-1), found.shape)
+        return np.where(known, np.nan_to_num(found, nan=np.inf, posinf=np.inf), 0.0)
 
     def by_name(self, points: Array) -> dict[str, Array]:
         """Points (points, axes) by quantity, (points, components)."""

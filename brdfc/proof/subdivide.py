@@ -32,6 +32,8 @@ NEAR = (-0.2, -0.05, -0.01, 0.01, 0.05, 0.2)
 SOME = 150
 """Boxes from which on a proof is given up that would not end: the bound falls at best with the
 power 4/5 of the boxes."""
+_AGREE = 1e-6
+"""What float64 may add to a difference that was seen."""
 TIGHT = 1.3
 """A bound so many times what was seen is not worth more work."""
 
@@ -158,4 +160,7 @@ def bound(pair: Pair, enough: float, budget: int, polish: int = 0, slack: float 
     if search.most <= enough:
         pursue(lambda: max(TIGHT * search.seen + 1e-9, search.seen + slack), search.done + polish)
     search.climb()
-    return Bound(max(search.most, search.seen), search.seen, pair.named(search.at), search.done)
+    most = search.most
+    if search.seen > most * (1 + _AGREE) + _AGREE:  # a proof that is refuted proves nothing
+        most = np.inf
+    return Bound(max(most, search.seen), search.seen, pair.named(search.at), search.done)

@@ -90,9 +90,12 @@ class Varying:
         """One component."""
         if self.low.shape[-1] == 1:
             return self
-        at = slice(index, index + 1)
-        slopes = Enclosure(*(end[..., at] for end in self.slopes)) if self.slopes else None
-        return Varying(Enclosure(*(end[..., at] for end in self.value)), slopes)
+
+        def of(e: Enclosure) -> Enclosure:  # what is the same for all components has one
+            one = e.low.shape[-1] == 1
+            return e if one else Enclosure(*(end[..., index : index + 1] for end in e))
+
+        return Varying(of(self.value), of(self.slopes) if self.slopes else None)
 
 
 def summed(a: Enclosure | None, b: Enclosure | None) -> Enclosure | None:

@@ -204,6 +204,7 @@ class _Work:
         if not self.made:
             return Lean(self.lean, (), kept, NOTHING)
         final = bound(self.pair(self.lean), self.limit, FINAL_BOXES, FINAL_BOXES)
-        if final.most > self.made[-1].bound.most:  # another order of boxes proved more
-            final = replace(final, most=self.made[-1].bound.most)
+        proved = self.made[-1].bound.most
+        if final.seen <= proved < final.most:  # another order of boxes proved more
+            final = replace(final, most=proved)
         return Lean(self.lean, tuple(self.made), kept, final)

@@ -86,7 +86,9 @@ def narrowed(
             elif section == "constants" and is_range:
                 raise scene.error(key, "a constant has one value, not a range")
             said[q.name] = [_inside(scene, key, q, e) for e in ends]
-    found = _measured(scene, model, quantities, said, pixel) if scene.image is not None else None
+    found = (
+        _measured(scene, model, quantities, said, pixel, fixed) if scene.image is not None else None
+    )
     channels = [q.name for q in quantities.values() if q.role is Role.CHANNEL]
     one = {n: tuple(e[0] for e in ends) for n, ends in said.items() if all(a == b for a, b in ends)}
     if channels and set(channels) <= one.keys() and not pixel:  # a profile has a channel at least
@@ -154,6 +156,7 @@ def _measured(
     quantities: Mapping[str, Quantity],
     said: dict[str, list[Ends]],
     pixel: list[str],
+    fixed: Collection[str],
 ) -> Measured:
     """Ranges of the image's samples, for the quantities the file does not speak of."""
     assert scene.image is not None
@@ -172,7 +175,23 @@ def _measured(
         width = q.type.value.width
         ends = list(found.ranges[start : start + width])
         start += width
-        if q.name in said:
+        if q.name in said or q.name in fixed:
+            for (low, high), name, has in zip(
+                said.get(q.name, ()), q.component_names, ends, strict=False
+            ):
+                if single(has[0]) < single(low) or single(has[1]) > single(high):
+                    raise SceneError(
+                        f"'{name}' goes from {has[0]:.6g} to {has[1]:.6g} in the image, and the "
+                        f"scene says {low:.6g} to {high:.6g}",
+                        where=str(scene.image),
+                        hint="say nothing of it, or what the image has",
+                    )
+            if q.name in fixed:
+                raise SceneError(
+                    f"'{q.name}' is fixed, and comes with the image",
+                    where=str(scene.image),
+                    hint="leave one of the two out",
+                )
             continue
         for (low, high), name in zip(ends, q.component_names, strict=True):
             if low < single(q.low) or high > single(q.high):

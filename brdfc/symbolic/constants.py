@@ -86,6 +86,8 @@ def _tamed(value: Any) -> Any:
     rough = value.evalf(15)
     if not rough.is_Float or abs(rough) > _out_of_reach():
         return sympy.Integer(0) if rough.is_zero else None
+    if abs(rough) * _out_of_reach() < 1:  # as good as 0, and its digits would fill the memory
+        return sympy.Integer(0)
     long = len(list(sympy.preorder_traversal(value))) > _MOST_PARTS
     return _rounded(value) if long else value
 
