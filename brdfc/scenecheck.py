@@ -10,7 +10,7 @@ import numpy as np
 
 from brdfc.checker import ERROR, OK, OPEN, Finding
 from brdfc.cmm.link import connect_alone
-from brdfc.cmm.rendering import profile_white
+from brdfc.cmm.rendering import profile_white, spectral_grid
 from brdfc.colours import colours_of
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import Dictionary
@@ -27,7 +27,7 @@ from brdfc.profiles.metadata import (
 )
 from brdfc.sceneplan import InScene, in_scene
 from brdfc.scenes.scene import Scene, read_scene
-from brdfc.source.errors import BrdfcError, SceneError, ValueGivenError
+from brdfc.source.errors import BrdfcError, LinkError, SceneError, ValueGivenError
 from brdfc.symbolic.evaluate import evaluate
 
 RUNS, PIXELS = 240, 64
@@ -41,23 +41,31 @@ def check_scene(path: str | Path, scene_path: str | Path) -> Iterator[Finding]:
     Raises SceneError where neither says which model it is, and what reading either raises.
     """
     profile, scene = Profile.load(path), read_scene(scene_path)
+    if profile.header.device_class == "mid ":
+        raise SceneError(
+            "this is a MID, which only names channels", where=str(path), hint="give the MVIS"
+        )
     at = _model_in(profile, scene)
-    names = [*at.narrowed.fixed, *at.narrowed.ends]
-    outside = False
+    findings = [_light(profile, scene), *_model(profile, scene)]
+    ends = at.narrowed.ends
     for q in (*at.roles.channels, *at.roles.variables):
-        if q.name in names:
-            for finding in _within(profile, q, at.narrowed.ends[q.name]):
-                outside |= finding.status == ERROR
-                yield finding
-    for name, values in at.narrowed.fixed.items():
-        for finding in _fixed(profile, at, name, values):
-            outside |= finding.status == ERROR
-            yield finding
-    yield _light(profile, scene)
-    if outside:
-        yield Finding(OPEN, "difference: not compared, as parts of the scene lie outside")
+        of = ends.get(q.name) or ((q.low, q.high),) * q.type.value.width
+        findings += _within(profile, q, of)
+    for q in at.model.quantities:
+        if q.name in at.roles.constants:
+            findings += _fixed(profile, q, at.roles.constants[q.name])
+    yield from findings
+    if any(finding.status == ERROR for finding in findings):
+        yield Finding(OPEN, "difference: not compared, as the scene is another")
     else:
         yield _difference(profile, at)
+
+
+def _model(profile: Profile, scene: Scene) -> Iterator[Finding]:
+    meta = profile.tags.get("meta")
+    own = meta.get("model") if isinstance(meta, Dictionary) else None
+    if scene.model is not None and own is not None and Path(scene.model).stem != own:
+        yield Finding(ERROR, f"model: {scene.model} in the scene, {own} in the profile")
 
 
 def _model_in(profile: Profile, scene: Scene) -> InScene:
@@ -73,7 +81,13 @@ def _model_in(profile: Profile, scene: Scene) -> InScene:
             "the profile does not say its model", where=scene.path, hint='model = "ward"'
         )
     try:
-        model = load(name, scene.geometry or said.get("geometry"))
+        wavelengths = spectral_grid(profile)
+        step = (wavelengths.end - wavelengths.start) / (wavelengths.steps - 1)
+        spectral = f"{wavelengths.start:g}nm..{wavelengths.end:g}nm,{step:g}nm"
+    except LinkError:
+        spectral = None
+    try:
+        model = load(name, scene.geometry or said.get("geometry"), spectral)
     except BrdfcError as error:
         raise SceneError(
             f"the profile's model '{name}' cannot be read: {error}",
@@ -122,24 +136,24 @@ def _inside(name: str, low: float, high: float, has: Described) -> Finding:
     return Finding(ERROR, f"{name}: {here} lies outside the profile's range {has.range_text}")
 
 
-def _fixed(
-    profile: Profile, at: InScene, name: str, values: tuple[float, ...]
-) -> Iterator[Finding]:
+def _fixed(profile: Profile, q: Quantity, values: tuple[float, ...]) -> Iterator[Finding]:
     """Whether a value of the scene is what the profile was compiled for, or lies in its range."""
     known, constants = _known(profile), describe_constants(profile)
-    if name in known:
-        yield _inside(name, min(values), max(values), known[name])
-    elif name in constants:
-        q = next(q for q in at.model.quantities if q.name == name)
+    if q.name in known:
+        yield _inside(q.name, min(values), max(values), known[q.name])
+    elif q.name in constants:
         shown = value_text(values, q.type)
         try:
-            same = np.allclose(parse_value(constants[name], q.type, name), values, rtol=1e-6)
+            same = np.allclose(parse_value(constants[q.name], q.type, q.name), values, rtol=1e-6)
         except ValueGivenError:
             same = False
-        said = f"{name}: {shown} in the scene; the profile was compiled for {constants[name]}"
-        yield Finding(OK if same else ERROR, said)
+        if same:
+            yield Finding(OK, f"{q.name}: {shown}, as the profile was compiled for")
+        else:
+            said = f"{shown} in the scene; the profile was compiled for {constants[q.name]}"
+            yield Finding(ERROR, f"{q.name}: {said}")
     else:
-        yield Finding(OK, f"{name}: not read; compared below")
+        yield Finding(OK, f"{q.name}: not read; compared below")
 
 
 def _light(profile: Profile, scene: Scene) -> Finding:

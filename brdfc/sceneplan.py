@@ -22,7 +22,7 @@ from brdfc.roles import Roles, Value
 from brdfc.scenes.fitting import Fitted, fit
 from brdfc.scenes.ranges import Narrowed, narrowed
 from brdfc.scenes.scene import Scene
-from brdfc.source.errors import SceneError, SelfCheckError
+from brdfc.source.errors import BrdfcError, SceneError, SelfCheckError
 from brdfc.symbolic.formula import Formula, simpler_in
 from brdfc.symbolic.intervals import Interval, hull
 
@@ -141,8 +141,10 @@ class Plan:
         unread = ", ".join(self.fitted.unread)
         return lines + ([f"no longer read: {unread}"] if unread else [])
 
-    def unreachable(self, error: SelfCheckError, form: Remembered | None) -> SceneError:
-        """Why a tolerance is not kept, in place of the self-check's own words."""
+    def unreachable(self, error: SelfCheckError, form: Remembered | None) -> BrdfcError:
+        """Why a tolerance is not kept, in place of the self-check's own words where that is why."""
+        if form is None or form.derivation[-1].measured.de <= self.goal.limit:
+            return error
         rounding = f"{form.derivation[-1].measured.de:.2g}" if form else "more"
         return SceneError(
             f"{error.message}; the best program rounds by {rounding}, and the tolerance is "

@@ -73,6 +73,8 @@ def command(
     if scene is not None:
         if wanted != ("forms",):
             raise click.UsageError("a scene's chart has the layer of forms only")
+        if optimize != "balanced" or max_error is not None:
+            raise click.UsageError("how exact the program has to be is said by the scene")
         planned = _planned(model, scene, geometry, pairs(fixed, "--set"), channels)
         loaded = planned.at.model
         notes = [f"Left out for the scene: {line}" for line in planned.ledger()]

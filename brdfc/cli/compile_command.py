@@ -163,6 +163,8 @@ def command(
     click.echo(f"channels     {_short(' '.join(compiled.roles.channel_names), 200)}")
     names = [f"{q.name} ({q.signature})" for q in compiled.roles.variables]
     click.echo(f"variables    {', '.join(names) or 'none'}")
+    if compiled.plan is not None and conditions is None:
+        conditions = compiled.plan.at.scene.conditions
     if conditions is not None:
         made = "; its spectrum is made from the white" if conditions.lamp_made else ""
         click.echo(f"light        {conditions}{made}")
@@ -204,12 +206,14 @@ def _show_scene(plan: Plan, explain: bool) -> None:
     found, lean = plan.at.narrowed.measured, plan.fitted.lean
     if found is not None:
         click.echo(f"image        {found.pixels:,} pixels")
-        for name, ends, middle in zip(found.names, found.ends, found.percentiles, strict=True):
+        rows = zip(found.names, found.ends, found.percentiles, found.ranges, strict=True)
+        for name, ends, middle, kept_to in rows:
+            kept = f", kept to {kept_to[0]:.6g}..{kept_to[1]:.6g}" if kept_to != ends else ""
             click.echo(
                 f"             {name}: {ends[0]:.6g}..{ends[1]:.6g} (percentiles 1 and 99: "
-                f"{middle[0]:.6g}..{middle[1]:.6g})"
+                f"{middle[0]:.6g}..{middle[1]:.6g}){kept}"
             )
-        for name in found.stretched:
+        for name in found.stretched if plan.at.scene.share == 0 else ():
             click.echo(
                 f"note: few pixels stretch the range of '{name}'; a share of pixels that may be "
                 "off (share = 0.001) would leave them out",
@@ -224,8 +228,8 @@ def _show_scene(plan: Plan, explain: bool) -> None:
         click.echo(f"left out     {line}")
     if lean.omissions:
         click.echo(f"together     {plan.said(lean.bound)}")
-    for kept in lean.kept[: None if explain else _KEPT]:
-        click.echo(f"kept         {kept.words}: {kept.why}; would save {kept.saved:.0f} ns")
+    for k in lean.kept[: None if explain else _KEPT]:
+        click.echo(f"kept         {k.words}: {k.why}; would save {k.saved:.0f} ns")
 
 
 _KEPT = 3

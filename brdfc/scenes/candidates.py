@@ -159,7 +159,7 @@ def _constant(e: Expression, known: Known) -> Iterator[Replacement]:
     parts = [single(v) for v in middle]
     by = parts[0] if e.width == 1 else vector(parts)
     shown = ", ".join(f"{v:.6g}" for v in middle)
-    yield Replacement(e, by, f"{_text(e)}, which is always about {shown}")
+    yield Replacement(e, by, f"{_text(e)}, taken as {shown}")
 
 
 def _polynomial(e: Expression, known: Known) -> Iterator[Replacement]:
@@ -191,7 +191,7 @@ def _polynomial(e: Expression, known: Known) -> Iterator[Replacement]:
         fitted = np.polynomial.Polynomial.fit(nodes, values, degree).convert()
         if len(fitted.coef) == degree + 1:  # else it is a polynomial of less, or a constant
             by = _horner(np.asarray(fitted.coef, dtype=np.float64), x)
-            yield Replacement(e, by, f"{_text(e)}, which is nearly {shape} in {_text(x)}")
+            yield Replacement(e, by, f"{_text(e)}, taken as {shape} in {_text(x)}")
 
 
 def _horner(coefficients: Array, x: Expression) -> Expression:
@@ -205,7 +205,7 @@ def _horner(coefficients: Array, x: Expression) -> Expression:
 def _argument(e: Expression, _known: Known) -> Iterator[Replacement]:
     if e.operator in _OWN_ARGUMENT[:4]:
         (x,) = e.arguments
-        yield Replacement(e, x, f"{e.operator} of {_text(x)}, which is nearly that itself")
+        yield Replacement(e, x, f"{e.operator} of {_text(x)}, taken as that itself")
 
 
 def _branch(e: Expression, _known: Known) -> Iterator[Replacement]:

@@ -59,7 +59,7 @@ def measure(path: str | Path, names: Sequence[str], share: float, where: str) ->
                 f"the image has {image.channels} samples a pixel; {len(names)} are needed: "
                 f"{', '.join(names)}",
                 where=where,
-                hint='say which quantities its samples are: samples = ["Rd", "ks", "m"]',
+                hint="a scene says which quantities they are: samples = [...] under [channels]",
             )
         low, high = _extremes(image, str(path))
         some = _spread(image)

@@ -79,6 +79,43 @@ def test_a_profile_is_checked_against_a_scene(folder: Path) -> None:
     assert done.returncode == 2
 
 
+def test_samples_go_by_their_names(folder: Path) -> None:
+    """An image whose samples are in another order than the model's channels."""
+    image = tifffile.imread(folder / "c.tif")[..., [4, 0, 1, 2, 3]]
+    tifffile.imwrite(folder / "o.tif", image, photometric="minisblack", planarconfig="contig")
+    named = SCENE.replace('"c.tif"', '"o.tif"\nsamples = ["m", "Rd", "ks"]')
+    (folder / "order.toml").write_text(named.replace('"-10deg"', '"20deg"'))
+    angles = ["--env", "incident=40deg", "--env", "reflection=20deg"]
+    done = run("apply", "w_mid.icc", "w_mvis.icc", "c.tif", "-o", "r.tif", *angles, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    done = run("apply", "ward", "o.tif", "-o", "o2.tif", "--scene", "order.toml", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    found = tifffile.imread(folder / "o2.tif")
+    assert ciede2000(found, tifffile.imread(folder / "r.tif")).max() < 0.1
+
+
+def test_what_is_said_has_to_fit_the_image(folder: Path) -> None:
+    (folder / "said.toml").write_text(SCENE + "ks = 0.02\n")
+    done = run("compile", "ward", "-o", "x.icc", "--scene", "said.toml", cwd=folder)
+    assert done.returncode == 1
+    assert "'ks' goes from" in done.stderr
+    done = run("apply", "ward", "c.tif", "-o", "x.tif", *ANGLES, "--env", "m=0.2", cwd=folder)
+    assert done.returncode == 1
+    assert "'m' goes from" in done.stderr
+
+
+def test_a_display_profile_is_not_taken_for_xyz(folder: Path) -> None:
+    (folder / "display.toml").write_text('output = "sRGB"\n' + SCENE)
+    done = run("compile", "ward", "-o", "d_mvis.icc", "--scene", "display.toml", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    done = run("apply", "d_mid.icc", "d_mvis.icc", "c.tif", "-o", "x2.tif", cwd=folder)
+    assert "compiled for sRGB" in done.stderr
+    done = run(
+        "apply", "d_mid.icc", "d_mvis.icc", "c.tif", "-o", "x3.tif", "--to", "sRGB", cwd=folder
+    )
+    assert "compiled for sRGB" not in done.stderr
+
+
 def test_outside_is_refused_unless_asked_for(folder: Path) -> None:
     command = ["eval", "s_mid.icc", "s_mvis.icc", "--pixel", "0.1,0.2,0.4"]
     assert run(*command, "--env", "reflection=-10deg", cwd=folder).returncode == 0
@@ -113,6 +150,8 @@ def test_wrong_usage(folder: Path) -> None:
     done = run(
         "apply", "w_mid.icc", "w_mvis.icc", "c.tif", "-o", "x.tif", "--tolerance", "1", cwd=folder
     )
+    assert done.returncode == 2
+    done = run("apply", "ward", "c.tif", "-o", "x.tif", "--extrapolate", cwd=folder)
     assert done.returncode == 2
     done = run("scene-chart", "scene.toml", cwd=folder)
     assert done.returncode == 1
