@@ -24,6 +24,7 @@ figures: .venv/installed
 	$(BIN)/python benchmarks/library.py
 	$(BIN)/python benchmarks/stability.py
 	$(BIN)/python benchmarks/scenes.py
+	$(BIN)/python benchmarks/engine.py
 
 golden: .venv/installed
 	$(BIN)/pytest --update-golden tests

@@ -54,6 +54,13 @@ def test_the_cylinder(tmp_path: Path) -> None:
     not_blank(tmp_path / "cylinder" / "cylinder.png")
 
 
+def test_a_scene(tmp_path: Path) -> None:
+    printed = run(tmp_path, "scene.py")
+    found = re.findall(r"(scene|image).tif: CIEDE2000 ([\d.e-]+)", printed)
+    assert len(found) == 2
+    assert all(float(worst) < 1e-3 for _, worst in found)
+
+
 @pytest.mark.skipif(not PAINT.is_file(), reason="the measured paints are not beside the checkout")
 def test_a_measured_spectrum(tmp_path: Path) -> None:
     printed = run(tmp_path, "spectral.py", str(PAINT))

@@ -99,7 +99,7 @@ def run(
     if array.ndim == 0 or array.shape[-1] != element.inputs:
         raise ProgramError(f"{element.inputs} channels are needed, the array is {array.shape}")
     flat = array.reshape(math.prod(array.shape[:-1]), element.inputs)
-    variables = {name: _variable(v, array.shape[:-1]) for name, v in environment.items()}
+    variables = {name: variable(v, array.shape[:-1]) for name, v in environment.items()}
     result = np.empty((len(flat), element.outputs), dtype=np.float32)
     binary = IEEE if ieee else BINARY
     with np.errstate(all="ignore"):
@@ -113,7 +113,7 @@ def run(
     return result.reshape(*array.shape[:-1], element.outputs)
 
 
-def _variable(value: ArrayLike, shape: tuple[int, ...]) -> Values:
+def variable(value: ArrayLike, shape: tuple[int, ...]) -> Values:
     """A number, or one for each pixel."""
     array = np.asarray(value, dtype=np.float32)
     return np.broadcast_to(array, shape).ravel() if array.ndim else array

@@ -73,6 +73,15 @@ def test_a_profile_is_checked_against_a_scene(folder: Path) -> None:
     assert (
         "error    reflection: -20deg..10deg in the scene; the profile was compiled" in done.stdout
     )
+    assert "open     difference: not compared" in done.stdout
+    done = run("check", "s_mid.icc", "--scene", "scene.toml", cwd=folder)
+    assert done.returncode == 1
+    assert "give the MVIS" in done.stderr
+    (folder / "silent.toml").write_text("tolerance = 0.1")
+    done = run("check", "s_mvis.icc", "--scene", "silent.toml", cwd=folder)
+    assert done.returncode == 1
+    assert "error    Rd: 0..1" in done.stdout
+    assert "error    incident: -90deg..90deg" in done.stdout
     done = run("check", "w_mvis.icc", "--scene", "other.toml", cwd=folder)
     assert done.returncode == 0, done.stdout
     done = run("check", "ward", "--scene", "scene.toml", cwd=folder)
