@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from threading import Lock
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,8 +16,36 @@ from brdfc.calc.program import Element, Program
 from brdfc.calc.verify import verify
 from brdfc.engine import interpreter
 from brdfc.engine.kernels import Values
-from brdfc.engine.straight import Crooked, Machine, straighten
+from brdfc.engine.straight import Crooked, Machine, Straight, straighten
 from brdfc.source.errors import ProgramError
+
+_RECENT = 16
+"""Straight forms kept: an image comes in bands, and each is a run of the same program."""
+_Key = tuple[int, tuple[tuple[str, bytes | None], ...]]
+_recent: dict[_Key, tuple[Program, Straight | None]] = {}
+_one_at_a_time = Lock()
+
+
+def _straight(program: Program, variables: Mapping[str, Values]) -> Straight | None:
+    """The straight form of a program in a run, None where it has none; made once for runs alike.
+
+    Raises ProgramError when the program cannot be proven safe.
+    """
+    same = tuple(sorted((n, None if v.ndim else v.tobytes()) for n, v in variables.items()))
+    key = (id(program), same)
+    known = _recent.get(key)
+    if known is not None and known[0] is program:
+        return known[1]
+    verify(program)
+    try:
+        found: Straight | None = straighten(program, variables)
+    except Crooked:
+        found = None
+    with _one_at_a_time:
+        if len(_recent) >= _RECENT:
+            del _recent[next(iter(_recent))]
+        _recent[key] = program, found
+    return found
 
 
 def run(element: Element, pixels: ArrayLike, environment: Mapping[str, ArrayLike]) -> Values:
@@ -26,10 +55,8 @@ def run(element: Element, pixels: ArrayLike, environment: Mapping[str, ArrayLike
         return interpreter.run(element, array, environment)
     shape = array.shape[:-1]
     variables = {name: interpreter.variable(v, shape) for name, v in environment.items()}
-    verify(element)
-    try:
-        straight = straighten(element, variables)
-    except Crooked:
+    straight = _straight(element, variables)
+    if straight is None:
         return interpreter.run(element, array, environment)
     if array.shape[-1] != element.inputs:
         raise ProgramError(f"{element.inputs} channels are needed, the array is {array.shape}")
