@@ -16,7 +16,8 @@ from brdfc.calc.program import Element, Program
 from brdfc.calc.verify import verify
 from brdfc.engine import interpreter
 from brdfc.engine.kernels import Values
-from brdfc.engine.straight import Crooked, Machine, Straight, straighten
+from brdfc.engine.steps import Machine
+from brdfc.engine.straight import Crooked, Straight, straighten
 from brdfc.source.errors import ProgramError
 
 _RECENT = 16

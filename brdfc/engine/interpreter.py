@@ -33,6 +33,7 @@ from brdfc.engine.kernels import (
     selector,
 )
 from brdfc.engine.linear import apply_matrix, solve
+from brdfc.engine.moves import move, rearrange
 from brdfc.engine.tables import apply_table
 from brdfc.source.errors import ProgramError
 
@@ -211,7 +212,7 @@ def _run_op(op: Op, machine: _Machine) -> None:
         results = [function(*values[i::n]) for i in range(n)]
         stack += [result[block] for block in range(blocks) for result in results]
     elif op.operator.operand is Operand.SPAN:
-        _move(op, machine)
+        move(op, machine)
     elif op.operator.operand is Operand.ELEMENT:
         element = machine.program.elements[n]
         inputs = machine.pop(element.inputs)
@@ -223,47 +224,17 @@ def _run_op(op: Op, machine: _Machine) -> None:
     elif name == "data" or name in _CONSTANTS:
         stack.append(np.asarray(_CONSTANTS.get(name, op.value), dtype=np.float32))
     else:
-        _rearrange(op, machine)
+        _other(op, machine)
 
 
-def _move(op: Op, machine: _Machine) -> None:
-    """Channels and temporaries."""
-    indices = range(op.first, op.first + op.second)
-    if op.name == "in":
-        machine.stack += [machine.inputs[i] for i in indices]
-    elif op.name == "tget":
-        machine.stack += [machine.temporaries[i] for i in indices]
-    else:
-        target = machine.outputs if op.name == "out" else machine.temporaries
-        values = machine.pop(op.second)
-        target.update(zip(indices, values, strict=True))
-        if op.name == "tsav":
-            machine.stack += values
-
-
-def _rearrange(op: Op, machine: _Machine) -> None:
-    """Stack moves and matrices."""
-    name, first, second, stack = op.name, op.first, op.second, machine.stack
-    if name == "copy":
-        stack += stack[len(stack) - first :] * second
-    elif name in ("rotl", "rotr"):
-        values = machine.pop(first)
-        places = (second if name == "rotl" else -second) % first
-        stack += values[places:] + values[:places]
-    elif name == "posd":
-        stack += [stack[-first]] * second
-    elif name == "flip":
-        stack += reversed(machine.pop(first))
-    elif name == "pop":
-        machine.pop(first)
-    elif name == "tran":
-        values = machine.pop(first * second)
-        stack += [values[r * second + c] for c in range(second) for r in range(first)]
-    elif name == "solv":
-        right = machine.pop(first)
-        matrix = machine.pop(first * second)
-        stack += solve(matrix, right, first)
-    elif name == "scnt":
+def _other(op: Op, machine: _Machine) -> None:
+    """What needs the values, or the stack itself, and is no arithmetic."""
+    stack = machine.stack
+    if op.name == "solv":
+        right = machine.pop(op.first)
+        matrix = machine.pop(op.first * op.second)
+        stack += solve(matrix, right, op.first)
+    elif op.name == "scnt":
         stack.append(np.asarray(len(stack), dtype=np.float32))
     else:
-        assert name == "noop", name
+        rearrange(op, machine)

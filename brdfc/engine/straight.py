@@ -12,15 +12,15 @@ Programs with what has no straight form (see Crooked) are left to the interprete
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from brdfc.calc.operators import Operand
 from brdfc.calc.program import Block, If, Op, Program, Select
-from brdfc.engine.kernels import BINARY, FOLDED, SCALED, UNARY, Values, holds
+from brdfc.engine.kernels import BINARY, FOLDED, GROUPED, SCALED, UNARY, Values, holds
+from brdfc.engine.moves import move, rearrange
 
 MOST_STEPS = 20_000
 """A program that comes to more is left to the interpreter: with both sides of every branch, nested
@@ -135,13 +135,17 @@ class _Trace:
         elif name in FOLDED:
             stack.append(self.apply(name, *self.pop(n)))
         elif op.operator.operand is Operand.SPAN:
-            self.move(op)
+            move(op, self)
         elif name == "env":
             stack += self.variable(op.signature)
         elif name == "data" or name in _CONSTANTS:
             stack.append(np.float32(_CONSTANTS.get(name, op.value)))
+        elif name == "scnt":
+            stack.append(np.float32(len(stack)))
+        elif name in GROUPED or name == "solv" or op.operator.operand is Operand.ELEMENT:
+            raise Crooked
         else:
-            self.rearrange(op)
+            rearrange(op, self)
 
     def variable(self, signature: str) -> list[Value]:
         if signature in ("true", "ndef"):
@@ -156,41 +160,6 @@ class _Trace:
             place = self.program.inputs + len(self.differing)
             self.differing[signature] = Source("in", (), place)
         return [self.differing[signature], np.float32(1)]
-
-    def move(self, op: Op) -> None:
-        indices = range(op.first, op.first + op.second)
-        if op.name == "in":
-            self.stack += [self.inputs[i] for i in indices]
-        elif op.name == "tget":
-            self.stack += [self.temporaries[i] for i in indices]
-        else:
-            target = self.outputs if op.name == "out" else self.temporaries
-            values = self.pop(op.second)
-            target.update(zip(indices, values, strict=True))
-            if op.name == "tsav":
-                self.stack += values
-
-    def rearrange(self, op: Op) -> None:
-        name, first, second, stack = op.name, op.first, op.second, self.stack
-        if name == "copy":
-            stack += stack[len(stack) - first :] * second
-        elif name in ("rotl", "rotr"):
-            values = self.pop(first)
-            places = (second if name == "rotl" else -second) % first
-            stack += values[places:] + values[:places]
-        elif name == "posd":
-            stack += [stack[-first]] * second
-        elif name == "flip":
-            stack += reversed(self.pop(first))
-        elif name == "pop":
-            self.pop(first)
-        elif name == "tran":
-            values = self.pop(first * second)
-            stack += [values[r * second + c] for c in range(second) for r in range(first)]
-        elif name == "scnt":
-            stack.append(np.float32(len(stack)))
-        elif name != "noop":
-            raise Crooked
 
     def branch(self, instruction: If) -> None:
         (condition,) = self.pop(1)
@@ -256,140 +225,3 @@ def _allocated(trace: _Trace, outputs: Sequence[Value]) -> Straight:
         free += [place[a] for a in read if last[a] == i]
     found = tuple(place[o] if isinstance(o, Source) else o for o in outputs)
     return Straight(tuple(steps), tuple(trace.differing), found, count)
-
-
-# ---------------------------------------------------------------- running
-
-Buffer = NDArray[np.float32]
-
-
-class Machine:
-    """Registers for blocks of at most so many pixels, and the steps on them."""
-
-    def __init__(self, straight: Straight, pixels: int) -> None:
-        self.straight = straight
-        self.registers = [np.empty(pixels, np.float32) for _ in range(straight.registers)]
-        self.wide = np.empty(pixels, np.float64)
-        self.mask = np.empty(pixels, np.bool_)
-
-    def run(self, inputs: Sequence[Values], count: int) -> list[Values]:
-        """Outputs, each (count,) or a constant, of inputs (count,); of the run's registers, so
-        that they are good until the next block."""
-        registers = [r[:count] for r in self.registers]
-        for register, values in zip(registers, inputs, strict=False):
-            register[:] = values
-        for step in self.straight.steps:
-            arguments = [registers[a] if isinstance(a, int) else a for a in step.arguments]
-            out = registers[step.target]
-            operation = _WRITTEN.get(step.name)
-            if operation is not None:
-                operation(self, out, *arguments)
-            elif step.name in FOLDED:
-                out[:] = FOLDED[step.name]([np.asarray(a) for a in arguments])
-            else:
-                kernel = UNARY.get(step.name) or BINARY[step.name]
-                out[:] = kernel(*(np.asarray(a) for a in arguments))
-        found = self.straight.outputs
-        return [registers[o] if isinstance(o, int) else np.asarray(o) for o in found]
-
-
-Operation = Callable[..., None]
-
-
-def _plain(function: np.ufunc) -> Operation:
-    return lambda _machine, out, *arguments: function(*arguments, out=out)
-
-
-def _in_float64(function: np.ufunc) -> Operation:
-    """Computed in float64 and rounded once, as the interpreter does."""
-
-    def operation(machine: Machine, out: Buffer, *arguments: Buffer) -> None:
-        wide = machine.wide[: len(out)]
-        function(*arguments, out=wide, dtype=np.float64)
-        np.copyto(out, wide, casting="same_kind")
-
-    return operation
-
-
-def _turned(machine: Machine, out: Buffer, x: Buffer, y: Buffer) -> None:
-    """The angle of (x, y), y nearer the top of the stack."""
-    _in_float64(np.arctan2)(machine, out, y, x)
-
-
-def _divide(machine: Machine, out: Buffer, x: Buffer, y: Buffer) -> None:
-    np.divide(x, y, out=out)
-    if np.ndim(y) == 0:
-        if y == 0:
-            out[:] = 0
-        return
-    mask = np.equal(y, 0, out=machine.mask[: len(out)])
-    if mask.any():
-        out[mask] = 0
-
-
-def _square(_machine: Machine, out: Buffer, x: Buffer) -> None:
-    np.multiply(x, x, out=out)
-
-
-def _cube(_machine: Machine, out: Buffer, x: Buffer) -> None:
-    np.multiply(x, x, out=out)
-    np.multiply(out, x, out=out)
-
-
-def _lesser(machine: Machine, out: Buffer, x: Buffer, y: Buffer) -> None:
-    mask = np.less(x, y, out=machine.mask[: len(out)])
-    np.copyto(out, y)
-    np.copyto(out, x, where=mask)
-
-
-def _greater(machine: Machine, out: Buffer, x: Buffer, y: Buffer) -> None:
-    mask = np.greater(x, y, out=machine.mask[: len(out)])
-    np.copyto(out, y)
-    np.copyto(out, x, where=mask)
-
-
-def _choose(machine: Machine, out: Buffer, condition: Buffer, a: Buffer, b: Buffer) -> None:
-    mask = np.greater_equal(condition, np.float32(0.5), out=machine.mask[: len(out)])
-    np.copyto(out, b)
-    np.copyto(out, a, where=mask)
-
-
-def _repeated(function: np.ufunc) -> Operation:
-    """Left to right, rounding after each."""
-
-    def operation(_machine: Machine, out: Buffer, first: Buffer, *others: Buffer) -> None:
-        np.copyto(out, first)
-        for other in others:
-            function(out, other, out=out)
-
-    return operation
-
-
-_WRITTEN: dict[str, Operation] = {
-    "add": _plain(np.add),
-    "sub": _plain(np.subtract),
-    "mul": _plain(np.multiply),
-    "div": _divide,
-    "neg": _plain(np.negative),
-    "sqrt": _plain(np.sqrt),
-    "sq": _square,
-    "cb": _cube,
-    "exp": _in_float64(np.exp),
-    "ln": _in_float64(np.log),
-    "log": _in_float64(np.log10),
-    "sin": _in_float64(np.sin),
-    "cos": _in_float64(np.cos),
-    "tan": _in_float64(np.tan),
-    "asin": _in_float64(np.arcsin),
-    "acos": _in_float64(np.arccos),
-    "atan": _in_float64(np.arctan),
-    "cbrt": _in_float64(np.cbrt),
-    "pow": _in_float64(np.power),
-    "atn2": _turned,
-    "vmin": _lesser,
-    "vmax": _greater,
-    "sum": _repeated(np.add),
-    "prod": _repeated(np.multiply),
-    "choose": _choose,
-}
-"""Operations that write into a register; all others go through the interpreter's kernels."""
