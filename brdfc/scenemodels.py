@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from brdfc.calc.price import operations
 from brdfc.colours import colours_of
 from brdfc.compiled import Compiled
 from brdfc.compiler import compile_model
@@ -28,16 +27,12 @@ Progress = Callable[[int, int], None]
 @dataclass(frozen=True)
 class Rival:
     """A model in the scene. price: nanoseconds a pixel of its program there; difference: CIEDE2000
-    from the richest model, at worst of the samples, and where. adequate: that keeps to the
+    from the richest model, at worst of the samples. adequate: that keeps to the
     tolerance; chosen: the cheapest of those that do."""
 
     name: str
-    title: str
-    channels: tuple[str, ...]
-    operators: int
     price: float
     difference: float
-    where: str
     adequate: bool
     richest: bool = False
     chosen: bool = False
@@ -88,12 +83,8 @@ def compare_models(scene: Scene, progress: Progress = lambda done, total: None) 
 
 
 def _library(scene: Scene) -> dict[str, Model]:
-    found = {}
-    for name, entry in library().items():
-        if entry.kind == "model":
-            model = load(name, scene.geometry)
-            found[name] = model
-    return found
+    names = [name for name, entry in library().items() if entry.kind == "model"]
+    return {name: load(name, scene.geometry) for name in names}
 
 
 def _richest(scene: Scene, models: Mapping[str, Model]) -> Model:
@@ -175,15 +166,11 @@ def _rival(model: Model, compiled: Compiled, at: InScene, *, richest: bool = Fal
     found = compared(compiled.mvis, at, 96, 32)
     if isinstance(found, str):
         raise BrdfcError(f"its profile reads {found}")
-    difference, where = found
+    difference, _ = found
     return Rival(
         model.name,
-        model.title,
-        compiled.roles.channel_names,
-        operations(compiled.program),
         compiled.price,
         difference,
-        where,
         difference <= at.scene.tolerance,
         richest,
     )

@@ -145,9 +145,9 @@ class Plan:
         """Why a tolerance is not kept, in place of the self-check's own words where that is why."""
         if form is None or form.derivation[-1].measured.de <= self.goal.limit:
             return error
-        rounding = f"{form.derivation[-1].measured.de:.2g}" if form else "more"
+        rounding = form.derivation[-1].measured.de
         return SceneError(
-            f"{error.message}; the best program rounds by {rounding}, and the tolerance is "
+            f"{error.message}; the best program rounds by {rounding:.2g}, and the tolerance is "
             f"{self.at.scene.tolerance:g}",
             where=f"{self.at.scene.path}: tolerance",
             hint="32-bit floats reach no more; allow more, or narrow the ranges",

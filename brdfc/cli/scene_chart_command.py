@@ -4,6 +4,8 @@ import sys
 
 import click
 
+from brdfc.cli.search_options import end_progress
+
 
 @click.command("scene-chart")
 @click.argument("scene")
@@ -32,7 +34,7 @@ def command(scene: str, output: str | None) -> None:
     kind = _kind(output)
     read = read_scene(scene)
     found = compare_models(read, _progress)
-    _progress(0, 0)
+    end_progress()
     click.echo(f"channels needed: {', '.join(found.needed)}")
     for r in found.rivals:
         marks = ["the richest"] if r.richest else []
@@ -84,5 +86,4 @@ def _kind(output: str | None) -> str:
 
 def _progress(done: int, total: int) -> None:
     if sys.stderr.isatty():
-        text = f"\rcompiling models {done}/{total} " if total else "\r" + " " * 40 + "\r"
-        click.echo(text, nl=False, err=True)
+        click.echo(f"\rcompiling models {done}/{total} ", nl=False, err=True)

@@ -22,6 +22,7 @@ from brdfc.calc.verify import verify
 from brdfc.engine.curves import apply_curves
 from brdfc.engine.kernels import (
     BINARY,
+    CONSTANTS,
     FOLDED,
     GROUPED,
     IEEE,
@@ -42,7 +43,6 @@ BLOCK = 32768
 HELD = 1 << 24
 """Float32 values held at a time, at most: a program that holds many gets fewer pixels at a time."""
 
-_CONSTANTS = {"pi": np.pi, "+INF": np.inf, "-INF": -np.inf, "NaN": np.nan}
 _FIXED = {"true": 1.0, "ndef": 0.0}
 """Variables that are what they are whatever a run defines (ndef: undefined, always)."""
 
@@ -221,8 +221,8 @@ def _run_op(op: Op, machine: _Machine) -> None:
         value = _FIXED.get(op.signature, machine.environment.get(op.signature))
         defined = value is not None and op.signature != "ndef"
         stack += [np.asarray(v, np.float32) for v in (0.0 if value is None else value, defined)]
-    elif name == "data" or name in _CONSTANTS:
-        stack.append(np.asarray(_CONSTANTS.get(name, op.value), dtype=np.float32))
+    elif name == "data" or name in CONSTANTS:
+        stack.append(np.asarray(CONSTANTS.get(name, op.value), dtype=np.float32))
     else:
         _other(op, machine)
 

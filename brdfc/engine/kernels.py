@@ -85,6 +85,9 @@ def selector(x: Values) -> NDArray[np.int64]:
     return _rounded(np.asarray(x)).astype(np.int64)
 
 
+CONSTANTS = {"pi": np.pi, "+INF": np.inf, "-INF": -np.inf, "NaN": np.nan}
+"""Operators that push a number."""
+
 BINARY: dict[str, Kernel] = {
     "add": np.add,
     "sub": np.subtract,

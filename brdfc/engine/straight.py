@@ -19,14 +19,12 @@ import numpy as np
 
 from brdfc.calc.operators import Operand
 from brdfc.calc.program import Block, If, Op, Program, Select
-from brdfc.engine.kernels import BINARY, FOLDED, GROUPED, SCALED, UNARY, Values, holds
+from brdfc.engine.kernels import BINARY, CONSTANTS, FOLDED, GROUPED, SCALED, UNARY, Values, holds
 from brdfc.engine.moves import move, rearrange
 
 MOST_STEPS = 20_000
 """A program that comes to more is left to the interpreter: with both sides of every branch, nested
 conditions double the work each."""
-
-_CONSTANTS = {"pi": np.pi, "+INF": np.inf, "-INF": -np.inf, "NaN": np.nan}
 
 
 class Crooked(Exception):
@@ -138,8 +136,8 @@ class _Trace:
             move(op, self)
         elif name == "env":
             stack += self.variable(op.signature)
-        elif name == "data" or name in _CONSTANTS:
-            stack.append(np.float32(_CONSTANTS.get(name, op.value)))
+        elif name == "data" or name in CONSTANTS:
+            stack.append(np.float32(CONSTANTS.get(name, op.value)))
         elif name == "scnt":
             stack.append(np.float32(len(stack)))
         elif name in GROUPED or name == "solv" or op.operator.operand is Operand.ELEMENT:

@@ -15,6 +15,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from brdfc.proof.intervals import CONDITIONS, FUNCTIONS
 from brdfc.symbolic.evaluate import evaluate
 from brdfc.symbolic.expression import (
     ONE,
@@ -35,9 +36,8 @@ Array = NDArray[np.float64]
 NODES = 33
 """Values of a function that a polynomial in its place is fitted to, at Chebyshev's nodes."""
 
-_OWN_ARGUMENT = ("sin", "tan", "asin", "atan", "cbrt")
-_OF_ONE = ("exp", "ln", "log10", "sqrt", "cbrt", "sin", "cos", "tan", "asin", "acos", "atan")
-_TRUTHS = ("lt", "le", "gt", "ge", "eq", "ne", "and", "or", "not")
+_OWN_ARGUMENT = ("sin", "tan", "asin", "atan")
+"""Functions that are nearly their argument where that is small."""
 _LEVELS = 3
 _ANY = "x"
 
@@ -86,7 +86,7 @@ class Known:
 def replacements(formula: Expression, known: Known) -> Iterator[Replacement]:
     """Everything that might be left out of a formula, larger parts last."""
     for e in walk(formula):
-        if e.operator in _TRUTHS or not known.quantities(e):
+        if e.operator in CONDITIONS or not known.quantities(e):
             continue
         for kind in KINDS:
             yield from (r for r in kind(e, known) if r.by is not e)
@@ -171,7 +171,7 @@ def _polynomial(e: Expression, known: Known) -> Iterator[Replacement]:
         name = next(iter(names))
         x, ends, function = quantity(name, 1), known.domain[name][0], e
         low, high = ends.low, ends.high
-    elif e.operator in _OF_ONE:
+    elif e.operator in FUNCTIONS:
         x = e.arguments[0]
         found = known.ends(x)
         if found is None:
@@ -203,7 +203,7 @@ def _horner(coefficients: Array, x: Expression) -> Expression:
 
 
 def _argument(e: Expression, _known: Known) -> Iterator[Replacement]:
-    if e.operator in _OWN_ARGUMENT[:4]:
+    if e.operator in _OWN_ARGUMENT:
         (x,) = e.arguments
         yield Replacement(e, x, f"{e.operator} of {_text(x)}, taken as that itself")
 

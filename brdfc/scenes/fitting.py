@@ -39,13 +39,12 @@ def reserved(tolerance: float) -> float:
 
 @dataclass(frozen=True)
 class Fitted:
-    """whole: the formula over the scene. lean: what is left of it, and what was left out; formula:
-    that, of the quantities that it reads. channels, variables: those quantities; unread: the names
+    """lean: what is left of the formula, and what was left out; formula: what is left, of the
+    quantities that it reads. channels, variables: those quantities; unread: the names
     of channels and variables that are dropped. always: what the ranges alone made needless, in
     words. declared: the ranges that the model itself declares for the quantities: there a program
     has to be finite."""
 
-    whole: Formula
     lean: Lean
     formula: Formula
     channels: tuple[Quantity, ...]
@@ -93,20 +92,15 @@ def fit(
     )
     tidy = simplest(lean.formula, formula.domain)
     read = _read(tidy)
-    # A profile has one channel at least.
-    some = {q.name: read.get(q.name, set()) for q in channels}
-    some = (
-        some
-        if any(some.values())
-        else {channels[0].name: set(range(len(domain[channels[0].name])))}
-    )
+    if not any(q.name in read for q in channels):  # a profile has one channel at least
+        read[channels[0].name] = set(range(channels[0].type.value.width))
     single = {
         (q.name, i): q.component_names[i]
         for q in channels
-        for i in some.get(q.name, ())
-        if len(some[q.name]) < q.type.value.width
+        for i in read.get(q.name, ())
+        if len(read[q.name]) < q.type.value.width
     }
-    kept = [part for q in channels for part in _kept(q, some.get(q.name, set()), domain[q.name])]
+    kept = [part for q in channels for part in _kept(q, read.get(q.name, set()), domain[q.name])]
     used = [q for q in variables if q.name in read]
     owner = {q.name: q.name for q in (*kept, *used)} | {
         new: old for (old, _), new in single.items()
@@ -117,7 +111,6 @@ def fit(
     ends = {q.name: Interval(q.low, q.high) for q in kept if owner[q.name] != q.name}
     ends |= {q.name: formula.domain[q.name] for q in (*kept, *used) if q.name not in ends}
     return Fitted(
-        formula,
         lean,
         Formula(_apart(tidy, single), ends, formula.white),
         tuple(kept),
