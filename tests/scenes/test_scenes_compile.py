@@ -111,6 +111,18 @@ def test_outside_the_scene_is_refused_or_finite(swept: Compiled) -> None:
         assert np.isfinite(link.apply(ends.T)).all()
 
 
+def test_guards_are_for_all_that_the_model_declares() -> None:
+    """In the scene the root below the lobe needs none; at grazing angles it would be NaN."""
+    variables = {"incident": "40deg", "reflection": "-20deg..30deg"}
+    channels = {"Rd": CYAN, "ks": "0.02..0.1", "m": "0.1..0.15"}
+    found = compiled("ward", variables=variables, channels=channels)
+    pixels = np.array([[0.0] * 3 + [ks, m] for ks in (0, 1) for m in (0.001, 1)], np.float32)
+    for reflection in (-np.pi / 2, np.pi / 2):
+        env = {"reflection": reflection}
+        link = brdfc.connect(found.mid, found.mvis, env=env, extrapolate=True)
+        assert np.isfinite(link.apply(pixels)).all()
+
+
 def test_what_a_scene_fixed_may_be_said_again(invisible: Compiled) -> None:
     env = {"incident": np.radians(40), "reflection": np.radians(-10)}
     brdfc.connect(invisible.mid, invisible.mvis, env=env)
