@@ -20,12 +20,19 @@ if "PYTEST_XDIST_WORKER" not in os.environ:
     os.environ.pop("BRDFC_PRICES", None)
     atexit.register(shutil.rmtree, os.environ["XDG_CACHE_HOME"], ignore_errors=True)
 
+# Two workers, each with as many threads of linear algebra as processors, wait for each other
+# a hundred times longer than they compute.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 GOLDEN = Path(__file__).parent / "golden"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--update-golden", action="store_true", help="write the golden files anew, for review"
+    )
+    parser.addoption(
+        "--programs", type=int, default=150, help="random programs that engines are compared on"
     )
 
 

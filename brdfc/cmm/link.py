@@ -9,7 +9,7 @@ angles among its channels, needs no other.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,11 +21,13 @@ from brdfc.cmm.transforms import (
     check_colours,
     device_transform,
     pipeline,
-    run_pipeline,
     transform_variables,
 )
+from brdfc.engine import runs
+from brdfc.engine.choice import Engine, engine_named
+from brdfc.engine.trace import Chain, Route
 from brdfc.icc.profile import Profile
-from brdfc.icc.types import Dictionary, NumberArray, Pipeline, Utf8Array
+from brdfc.icc.types import Dictionary, NumberArray, Utf8Array
 from brdfc.lang.types import TYPES
 from brdfc.lang.values import parse_value
 from brdfc.profiles.brdf_function import ANGLES
@@ -36,26 +38,6 @@ ProfileOrPath = Profile | str | Path
 
 
 @dataclass(frozen=True)
-class Route:
-    """From the channels of a MID to those of an MVIS.
-
-    sources: for each channel of the MVIS the index of the MID's, or None where it takes its
-    default.
-    """
-
-    sources: tuple[int | None, ...]
-    defaults: tuple[float, ...]
-
-    def apply(self, values: Values) -> Values:
-        shape = values.shape[:-1]
-        columns = [
-            values[..., source] if source is not None else np.full(shape, default, np.float32)
-            for source, default in zip(self.sources, self.defaults, strict=True)
-        ]
-        return np.stack(columns, axis=-1)
-
-
-@dataclass(frozen=True)
 class Link:
     """Connected profiles with the variables of a run.
 
@@ -63,38 +45,91 @@ class Link:
     values are; transform: the tag that leads there. defaulted: the names of the channels that take
     their default. environment: variables by signature, see engine.interpreter.run. described: what
     the first says of its channels. samples: the names of an image's samples, where the profile was
-    compiled for one and takes only some of them.
+    compiled for one and takes only some of them. chain: the elements of the profiles' transforms,
+    and the route between them. engine, threads: how it is run, see engine.runs.
     """
 
     channels: tuple[str, ...]
-    steps: tuple[Pipeline | Route, ...]
+    chain: Chain
     profile: Profile
     transform: str
     defaulted: tuple[str, ...]
     environment: Mapping[str, ArrayLike]
     described: tuple[Described, ...]
     samples: tuple[str, ...] = ()
+    engine: Engine = Engine.AUTO
+    threads: int | None = None
+
+    @property
+    def inputs(self) -> int:
+        """Samples of a pixel."""
+        return len(self.channels)
 
     @property
     def outputs(self) -> int:
         """Values of a colour: 3 for XYZ, one a wavelength for reflectances."""
-        last = self.steps[-1]
-        assert isinstance(last, Pipeline)
-        return last.outputs
+        return runs.outputs_of(self.chain, self.inputs)
 
-    def apply(self, pixels: ArrayLike) -> Values:
+    def apply(self, pixels: ArrayLike, total: int | None = None) -> Values:
         """Colours (..., outputs), float32, for pixels (..., channels); a white has Y = 1, or
-        reflectances of 1.
+        reflectances of 1. Pixels may lie interleaved or in planes, which is quicker.
 
+        total: how many pixels are to come in all, where these are a part of them.
         Raises ProgramError when the last axis has another length.
         """
-        values = np.asarray(pixels, dtype=np.float32)
-        for step in self.steps:
-            if isinstance(step, Route):
-                values = step.apply(values)
-            else:
-                values = run_pipeline(step, values, self.environment)
-        return values
+        return runs.run(
+            self.chain,
+            self.inputs,
+            pixels,
+            self.environment,
+            engine=self.engine,
+            threads=self.threads,
+            total=total,
+        )
+
+    def sweep(
+        self, pixels: ArrayLike, *, extrapolate: bool = False, **variables: ArrayLike
+    ) -> Values:
+        """Colours of the same pixels for several values of variables, in one pass over the pixels.
+
+        variables: by name or signature, in radians for angles: a number each, or an array; arrays
+        go side by side, as NumPy broadcasts them. All others are as in the link. Returns (...,
+        pixels..., outputs), the axes of the variables first: `sweep(pixels, incident=0.7,
+        reflection=[-0.5, 0, 0.5])` gives three images. Raises as connect and apply do.
+        """
+        array = np.asarray(pixels, dtype=np.float32)
+        shape, environments = self._environments(variables, extrapolate)
+        results = np.empty((len(environments), *array.shape[:-1], self.outputs), np.float32)
+        runs.sweep(
+            self.chain,
+            self.inputs,
+            array,
+            environments,
+            list(results),
+            engine=self.engine,
+            threads=self.threads,
+        )
+        return results.reshape(*shape, *results.shape[1:])
+
+    def _environments(
+        self, variables: Mapping[str, ArrayLike], extrapolate: bool
+    ) -> tuple[tuple[int, ...], list[Mapping[str, ArrayLike]]]:
+        """The variables of every run of a sweep, and the shape that they are to have."""
+        try:
+            values = np.broadcast_arrays(*(np.asarray(v, np.float64) for v in variables.values()))
+        except ValueError:
+            sizes = ", ".join(f"{n} has {np.size(v):,}" for n, v in variables.items())
+            raise ValueGivenError(
+                f"the values of a sweep do not go side by side: {sizes}",
+                hint="give as many values of each, or one",
+            ) from None
+        shape = values[0].shape if values else ()
+        found: list[Mapping[str, ArrayLike]] = []
+        for place in np.ndindex(shape):
+            here = {n: float(v[place]) for n, v in zip(variables, values, strict=True)}
+            more = environment_of(self.profile, self.transform, here, extrapolate)
+            found.append({**self.environment, **more})
+        return shape, found
 
 
 def connect(
@@ -102,25 +137,30 @@ def connect(
     env: Mapping[str, float] | None = None,
     transform: str | None = None,
     extrapolate: bool = False,
+    engine: Engine | str = Engine.AUTO,
+    threads: int | None = None,
 ) -> Link:
     """Connect a MID to an MVIS, or make ready a single profile of device values.
 
     env: variables of the run, by the model's name or by four-letter signature, in radians for
     angles. transform: the tag of the last profile to use: "M2B0" (the usual one) or "M2S0" of an
     MVIS, "A2B1" or "bAB0" of a profile of device values. extrapolate: take variables outside the
-    ranges that the profile states too.
+    ranges that the profile states too. engine: what runs it, a choice.Engine or its name. threads:
+    as many as there are processors where None.
     Raises ProfileError for what is no profile, LinkError for profiles that do not connect,
     ValueGivenError for variables that do not exist or are outside their range.
     """
     loaded = [_profile(p) for p in profiles]
     if len(loaded) == 1:
-        return _single(loaded[0], env or {}, transform, extrapolate)
-    if len(loaded) != 2:
+        link = _single(loaded[0], env or {}, transform, extrapolate)
+    elif len(loaded) == 2:
+        link = _pair(loaded[0], loaded[1], env or {}, transform or "M2B0", extrapolate)
+    else:
         raise LinkError(
             f"{len(loaded)} profiles do not connect",
             hint="give a MID and an MVIS, or one profile of device values",
         )
-    return _pair(loaded[0], loaded[1], env or {}, transform or "M2B0", extrapolate)
+    return replace(link, engine=engine_named(engine), threads=threads)
 
 
 def _pair(
@@ -149,7 +189,7 @@ def _pair(
         raise LinkError(f"{len(values)} defaults ('mdv ') for {len(wanted)} channels")
     return Link(
         given if first.inputs == len(given) else tuple(map(str, range(first.inputs))),
-        (first, Route(sources, values), second),
+        (*first.elements, Route(sources, values), *second.elements),
         destination,
         transform,
         tuple(n for n, index in zip(wanted, sources, strict=True) if index is None),
@@ -173,7 +213,7 @@ def _single(
     if len(names) != only.inputs:
         names, described = tuple(map(str, range(only.inputs))), ()
     environment = environment_of(profile, found, env, extrapolate)
-    return Link(names, (only,), profile, found, (), environment, described)
+    return Link(names, only.elements, profile, found, (), environment, described)
 
 
 def connect_alone(profile: Profile, env: Mapping[str, float] | None = None) -> Link:
@@ -187,7 +227,7 @@ def connect_alone(profile: Profile, env: Mapping[str, float] | None = None) -> L
         raise LinkError("the channel names ('mcta') do not match the transform's channels")
     environment = environment_of(profile, "M2B0", env or {})
     described = describe(profile, "channel")
-    return Link(names, (only,), profile, "M2B0", (), environment, described)
+    return Link(names, only.elements, profile, "M2B0", (), environment, described)
 
 
 def channel_defaults(link: Link) -> tuple[float, ...]:

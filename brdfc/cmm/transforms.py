@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from brdfc.calc.program import Program
 from brdfc.calc.verify import verify
-from brdfc.engine.blocks import run
+from brdfc.engine.runs import run
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import NO_SPACE
 from brdfc.icc.types import Pipeline
@@ -44,13 +44,8 @@ def pipeline(profile: Profile, signature: str) -> Pipeline:
 def run_pipeline(
     transform: Pipeline, pixels: ArrayLike, environment: Mapping[str, ArrayLike]
 ) -> Values:
-    """The elements of a transform, one after the other; see engine.blocks.run."""
-    values = np.asarray(pixels, dtype=np.float32)
-    if values.ndim == 0 or values.shape[-1] != transform.inputs:
-        raise ProgramError(f"{transform.inputs} channels are needed, the array is {values.shape}")
-    for element in transform.elements:
-        values = run(element, values, environment)
-    return values
+    """The elements of a transform; see engine.runs.run."""
+    return run(transform.elements, transform.inputs, pixels, environment)
 
 
 def device_transform(profile: Profile) -> str:

@@ -30,6 +30,7 @@ from brdfc.engine.kernels import (
     UNARY,
     Kernel,
     Values,
+    compute,
     holds,
     selector,
 )
@@ -132,7 +133,7 @@ def _apply(
         _run_block(element.body, machine)
         return [machine.outputs[channel] for channel in range(element.outputs)]
     if isinstance(element, Matrix):
-        return apply_matrix(element, inputs)
+        return [np.asarray(v) for v in apply_matrix(element, inputs, compute)]
     if isinstance(element, CurveSet):
         return apply_curves(element, inputs)
     if isinstance(element, LookupTable):
@@ -209,7 +210,7 @@ def _run_op(op: Op, machine: _Machine) -> None:
     elif name in GROUPED:
         blocks, function = GROUPED[name]
         values = machine.pop(blocks * n)
-        results = [function(*values[i::n]) for i in range(n)]
+        results = [function(compute, *values[i::n]) for i in range(n)]
         stack += [result[block] for block in range(blocks) for result in results]
     elif op.operator.operand is Operand.SPAN:
         move(op, machine)
@@ -233,7 +234,7 @@ def _other(op: Op, machine: _Machine) -> None:
     if op.name == "solv":
         right = machine.pop(op.first)
         matrix = machine.pop(op.first * op.second)
-        stack += solve(matrix, right, op.first)
+        stack += [np.asarray(v) for v in solve(matrix, right, op.first, compute)]
     elif op.name == "scnt":
         stack.append(np.asarray(len(stack), dtype=np.float32))
     else:

@@ -177,58 +177,88 @@ FOLDED: dict[str, Callable[[Sequence[Values]], Values]] = {
 """Many values, deepest first, to one; sums and products round after every term."""
 
 
-_PI = np.float32(np.pi)
+Apply = Callable[..., Any]
+"""How the functions below compute an operation: `apply(name, *arguments)`, by a name of the tables
+above or of INNER. The interpreter computes at once, a trace writes it down (trace.py)."""
 
 
-def _polar(x: Values, y: Values) -> tuple[Values, Values]:
-    hue = BINARY["atn2"](x, y) * np.float32(180) / _PI
-    return np.sqrt(y * y + x * x), np.where(hue < 0, hue + np.float32(360), hue)
+def compute(name: str, *arguments: Values) -> Values:
+    """An operation of one result, here and now."""
+    if name in FOLDED:
+        return FOLDED[name](arguments)
+    kernel = BINARY.get(name) or UNARY.get(name) or INNER[name]
+    return kernel(*arguments)
 
 
-def _cartesian(radius: Values, hue: Values) -> tuple[Values, Values]:
-    angle = hue * _PI / np.float32(180)
-    return radius * UNARY["cos"](angle), radius * UNARY["sin"](angle)
+def choose(condition: Values, x: Values, y: Values) -> Values:
+    """x where the condition holds, else y."""
+    return np.where(holds(condition), x, y)
 
 
 # CIELAB (CIE 15:2004, eq. 8.3-8.8) with the reference's thresholds, and in float64 what it computes
 # in float64. tLab(0,0,0) has L = -6e-8 for that reason.
 
+ROOT_ABOVE, CUBE_ABOVE, FOOT, SLOPE = 0.008856, 0.20689303448275862, 16 / 116, 7.787037037037037
+
 
 def _root(t: Values) -> Values:
-    linear = 7.787037037037037 * t.astype(np.float64) + 16 / 116
-    return np.where(t.astype(np.float64) > 0.008856, UNARY["cbrt"](t), linear.astype(np.float32))
+    wide = t.astype(np.float64)
+    linear = SLOPE * wide + FOOT
+    return np.where(wide > ROOT_ABOVE, UNARY["cbrt"](t), linear.astype(np.float32))
 
 
 def _cube(f: Values) -> Values:
     """The inverse of _root, clipped to 0 below f = 16/116 and for NaN."""
     wide = f.astype(np.float64)
-    linear = ((wide - 16 / 116) / 7.787037037037037).astype(np.float32)
-    power = np.where(wide > 0.20689303448275862, f * f * f, linear)
-    return np.where(wide > 16 / 116, power, np.float32(0))
+    linear = ((wide - FOOT) / SLOPE).astype(np.float32)
+    power = np.where(wide > CUBE_ABOVE, f * f * f, linear)
+    return np.where(wide > FOOT, power, np.float32(0))
 
 
-def _to_lab(x: Values, y: Values, z: Values) -> tuple[Values, Values, Values]:
+INNER: dict[str, Kernel] = {
+    "choose": choose,
+    "lab root": _root,
+    "lab cube": _cube,
+    "lab lightness": _single(lambda fy: 116 * fy - 16),
+    "lab a": _single(lambda fx, fy: 500 * (fx - fy)),
+    "lab b": _single(lambda fy, fz: 200 * (fy - fz)),
+    "lab fx": _single(lambda a, fy: a / 500 + fy),
+    "lab fz": _single(lambda b, fy: fy - b / 200),
+}
+"""What operators of several results are made of, and the choice between two values."""
+
+_PI, _STRAIGHT, _CIRCLE = np.float32(np.pi), np.float32(180), np.float32(360)
+
+
+def _polar(apply: Apply, x: Any, y: Any) -> tuple[Any, ...]:
+    hue = apply("div", apply("mul", apply("atn2", x, y), _STRAIGHT), _PI)
+    radius = apply("sqrt", apply("add", apply("sq", y), apply("sq", x)))
+    negative = apply("lt", hue, np.float32(0))
+    return radius, apply("choose", negative, apply("add", hue, _CIRCLE), hue)
+
+
+def _cartesian(apply: Apply, radius: Any, hue: Any) -> tuple[Any, ...]:
+    angle = apply("div", apply("mul", hue, _PI), _STRAIGHT)
+    return tuple(apply("mul", radius, apply(name, angle)) for name in ("cos", "sin"))
+
+
+def _to_lab(apply: Apply, *xyz: Any) -> tuple[Any, ...]:
     """CIELAB of XYZ relative to white."""
-    fx, fy, fz = (_root(v).astype(np.float64) for v in (x, y, z))
-    return (
-        (116 * fy - 16).astype(np.float32),
-        (500 * (fx - fy)).astype(np.float32),
-        (200 * (fy - fz)).astype(np.float32),
-    )
+    fx, fy, fz = (apply("lab root", v) for v in xyz)
+    return apply("lab lightness", fy), apply("lab a", fx, fy), apply("lab b", fy, fz)
 
 
-def _to_xyz(lightness: Values, a: Values, b: Values) -> tuple[Values, Values, Values]:
+def _to_xyz(apply: Apply, lightness: Any, a: Any, b: Any) -> tuple[Any, ...]:
     """The inverse of _to_lab."""
-    fy = (lightness + np.float32(16)) / np.float32(116)
-    fx = (a.astype(np.float64) / 500 + fy).astype(np.float32)
-    fz = (fy - b.astype(np.float64) / 200).astype(np.float32)
-    return _cube(fx), _cube(fy), _cube(fz)
+    fy = apply("div", apply("add", lightness, np.float32(16)), np.float32(116))
+    roots = apply("lab fx", a, fy), fy, apply("lab fz", b, fy)
+    return tuple(apply("lab cube", f) for f in roots)
 
 
-GROUPED: dict[str, tuple[int, Callable[..., tuple[Values, ...]]]] = {
+GROUPED: dict[str, tuple[int, Callable[..., tuple[Any, ...]]]] = {
     "ctop": (2, _polar),
     "ptoc": (2, _cartesian),
     "tLab": (3, _to_lab),
     "tXYZ": (3, _to_xyz),
 }
-"""Blocks of n values each (2 or 3 blocks) to as many."""
+"""Blocks of n values each, 2 or 3 of them, to as many: how many, and a function of Apply."""

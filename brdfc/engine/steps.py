@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfc.engine.kernels import BINARY, FOLDED, UNARY, Values
+from brdfc.engine.kernels import Values, compute
 from brdfc.engine.straight import Straight
 
 Buffer = NDArray[np.float32]
@@ -30,19 +30,16 @@ class Machine:
         """Outputs, each (count,) or a constant, of inputs (count,); of the run's registers, so
         that they are good until the next block."""
         registers = [r[:count] for r in self.registers]
-        for register, values in zip(registers, inputs, strict=False):
-            register[:] = values
+        for place in self.straight.read:
+            registers[place][:] = inputs[place]
         for step in self.straight.steps:
             arguments = [registers[a] if isinstance(a, int) else a for a in step.arguments]
             out = registers[step.target]
             operation = _WRITTEN.get(step.name)
             if operation is not None:
                 operation(self, out, *arguments)
-            elif step.name in FOLDED:
-                out[:] = FOLDED[step.name]([np.asarray(a) for a in arguments])
             else:
-                kernel = UNARY.get(step.name) or BINARY[step.name]
-                out[:] = kernel(*(np.asarray(a) for a in arguments))
+                out[:] = compute(step.name, *(np.asarray(a) for a in arguments))
         found = self.straight.outputs
         return [registers[o] if isinstance(o, int) else np.asarray(o) for o in found]
 

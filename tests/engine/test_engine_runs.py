@@ -1,0 +1,252 @@
+"""The usual way to run chains gives what the interpreter gives, by every engine.
+
+NumPy's results are the interpreter's to the last bit. Those of machine code may differ by one unit
+in the last place of a function, once in a million; hardly a program shows it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from random_programs import CHANNELS, SPECIAL, random_program, special_pixels
+
+from brdfc.calc.program import Element, Op, Program
+from brdfc.calc.text import assemble
+from brdfc.calc.verify import verify
+from brdfc.engine import choice, interpreter, jobs, native, runs, trace
+from brdfc.engine.choice import Engine
+from brdfc.engine.kernels import BINARY, UNARY
+from brdfc.engine.straight import straighten
+from brdfc.engine.trace import Crooked, Route
+from brdfc.source.errors import BrdfcError, ProgramError, ValueGivenError
+
+GOLDEN = sorted((Path(__file__).parents[1] / "golden").glob("*.calc"))
+COMPILED = pytest.param(
+    Engine.COMPILED,
+    marks=pytest.mark.skipif(not native.available(), reason="llvmlite is not installed"),
+)
+ENGINES = pytest.mark.parametrize("engine", [Engine.BLOCKS, COMPILED])
+
+
+def different(a: np.ndarray, b: np.ndarray) -> int:
+    """How many values differ in a bit; every NaN equals every NaN."""
+    assert a.shape == b.shape
+    bits = a.view(np.int32) == b.view(np.int32)
+    return int((~(bits | (np.isnan(a) & np.isnan(b)))).sum())
+
+
+def run(program: Element, pixels: object, environment: object, engine: Engine) -> np.ndarray:
+    return runs.run((program,), program.inputs, pixels, environment, engine=engine)
+
+
+def channels_of(program_text: str) -> int:
+    """How many channels a program reads at most."""
+    body = assemble(program_text)
+
+    def highest(block) -> int:  # type: ignore[no-untyped-def]
+        found = 0
+        for step in block:
+            if isinstance(step, Op):
+                found = max(found, step.first + step.second if step.name == "in" else 0)
+            else:
+                found = max([found, *(highest(b) for b in step.bodies)])
+        return found
+
+    return highest(body)
+
+
+@ENGINES
+@pytest.mark.parametrize("path", GOLDEN, ids=lambda p: p.stem)
+def test_every_golden_program(path: Path, engine: Engine) -> None:
+    """With variables defined and not, the same for all pixels and another for each."""
+    text = path.read_text()
+    program = Program(channels_of(text), 3, assemble(text))
+    random = np.random.default_rng(3)
+    pixels = special_pixels(random, 5000, program.inputs)
+    names = sorted(verify(program).variables)
+    given: list[dict[str, object]] = [{}, dict.fromkeys(names, 0.4), dict.fromkeys(names, 1.58)]
+    given.append({name: random.uniform(-1.6, 1.6, 5000).astype(np.float32) for name in names})
+    for variables in given:
+        found = run(program, pixels, variables, engine)
+        assert not different(found, interpreter.run(program, pixels, variables))
+
+
+@ENGINES
+@pytest.mark.parametrize("name", [*UNARY, *BINARY])
+def test_every_operator_on_special_values(name: str, engine: Engine) -> None:
+    grid = np.array(np.meshgrid(SPECIAL, SPECIAL), np.float32).reshape(2, -1).T.copy()
+    arguments = 1 if name in UNARY else 2
+    program = Program(2, 1, (Op("in", 0, arguments), Op(name, 1), Op("out", 0, 1)))
+    assert not different(run(program, grid, {}, engine), interpreter.run(program, grid, {}))
+    if arguments == 1:
+        return
+    for constant in SPECIAL[:6]:  # one of the arguments is the same for all pixels
+        body = (Op("data", value=float(np.float32(constant))), Op("in", 0, 1), Op(name, 1))
+        program = Program(2, 1, (*body, Op("out", 0, 1)))
+        assert not different(run(program, grid, {}, engine), interpreter.run(program, grid, {}))
+
+
+@ENGINES
+def test_random_programs(engine: Engine, request: pytest.FixtureRequest) -> None:
+    """`pytest tests/engine/test_engine_runs.py -k random --programs 20000` takes ten minutes; it
+    last found 0 values of NumPy's and 0 of machine code's 30,000,000 that differ."""
+    others = values = 0
+    for seed in range(request.config.getoption("--programs")):
+        program = random_program(seed)
+        random = np.random.default_rng(seed)
+        pixels = special_pixels(random, 500, CHANNELS)
+        angles = random.uniform(-2, 2, 500).astype(np.float32)
+        given = [{}, {"inci": 0.7, "refl": -0.3}, {"inci": angles}][seed % 3]
+        expected = interpreter.run(program, pixels, given)
+        count = different(run(program, pixels, given, engine), expected)
+        assert count == 0 or engine is Engine.COMPILED, f"seed {seed}"
+        others, values = others + count, values + expected.size
+    assert others <= 1e-5 * values
+
+
+def test_what_depends_on_no_pixel_is_computed_before() -> None:
+    text = "{ env(inci) if { } else { pop 0 } cos in[0,1] mul out[0,1] }"
+    program = Program(1, 1, assemble(text))
+    straight = straighten((program,), 1, {"inci": np.asarray(0.5, np.float32)})
+    assert [step.name for step in straight.steps] == ["mul"]
+
+
+@ENGINES
+def test_what_has_no_straight_form_is_left_to_the_interpreter(engine: Engine) -> None:
+    from brdfc.calc.curves import CurveSet, SampledCurve
+    from brdfc.calc.tables import Samples
+
+    curves = CurveSet((SampledCurve(0.0, 1.0, Samples.of([0, 0.2, 1])),))
+    with pytest.raises(Crooked):
+        straighten((curves,), 1, {})
+    values = np.array([[0.0], [0.75], [7.0]], np.float32)
+    np.testing.assert_array_equal(
+        run(curves, values, {}, engine), interpreter.run(curves, values, {})
+    )
+    program = Program(1, 1, assemble("{ in curv sq out }"), (curves,))
+    found = run(program, values, {}, engine)
+    np.testing.assert_array_equal(found, interpreter.run(program, values, {}))
+
+
+def test_too_many_steps_have_no_straight_form(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both sides of every one of many nested conditions."""
+    monkeypatch.setattr(trace, "MOST_FOLLOWED", 1000)
+    text = "in[0,1] sq"
+    for _ in range(9):
+        text = f"in[0,1] if {{ {text} 1 add }} else {{ {text} 2 mul }}"
+    program = Program(1, 1, assemble(f"{{ {text} out[0,1] }}"))
+    with pytest.raises(Crooked):
+        straighten((program,), 1, {})
+    assert run(program, [[0.25]], {}, Engine.AUTO) == 0.25**2 * 2**9
+
+
+POLAR = Program(3, 4, assemble("{ in[0,2] ctop[1] in[2,1] copy[1,1] exp out[0,4] }"))
+
+
+def layouts(values: np.ndarray) -> dict[str, np.ndarray]:
+    """The same values (rows, columns, samples) of several strides."""
+    rows, columns, samples = values.shape
+    wide = np.zeros((rows, columns, samples + 2), np.float32)
+    wide[..., 1 : samples + 1] = values
+    odd = np.frombuffer(b"x" + values.tobytes(), np.uint8)[1:].view(np.float32)
+    planes = np.ascontiguousarray(np.moveaxis(values, -1, 0))
+    return {
+        "interleaved": np.ascontiguousarray(values),
+        "planes": np.moveaxis(planes, 0, -1),
+        "some of the samples": wide[..., 1 : samples + 1],
+        "upside down": np.ascontiguousarray(values[::-1])[::-1],
+        "across": np.ascontiguousarray(values.swapaxes(0, 1)).swapaxes(0, 1),
+        "not aligned": odd.reshape(values.shape),
+        "another byte order": values.astype(">f4"),
+    }
+
+
+@ENGINES
+@pytest.mark.parametrize("size", [(1, 1), (3, 5), (17, 64), (33, 1111)], ids=str)
+def test_every_layout_and_size(
+    size: tuple[int, int], engine: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(runs, "SHARE", 4096)
+    monkeypatch.setattr(jobs, "PIECE", 1000)
+    pixels = special_pixels(np.random.default_rng(1), size[0] * size[1], 3).reshape(*size, 3)
+    expected = interpreter.run(POLAR, pixels, {})
+    for name, given in layouts(pixels).items():
+        assert not different(run(POLAR, given, {}, engine), expected), name
+
+
+@ENGINES
+def test_results_where_they_are_wanted(engine: Engine) -> None:
+    pixels = special_pixels(np.random.default_rng(1), 1000, 3)
+    expected = interpreter.run(POLAR, pixels, {})
+    for given in layouts(np.zeros((50, 20, 4), np.float32)).values():
+        if given.dtype.isnative and given.flags.writeable:
+            runs.sweep((POLAR,), 3, pixels.reshape(50, 20, 3), [{}], [given], engine=engine)
+            assert not different(np.ascontiguousarray(given).reshape(-1, 4), expected)
+
+
+@ENGINES
+def test_several_runs_in_one_pass(engine: Engine, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(jobs, "PIECE", 300)
+    monkeypatch.setattr(native, "_kept", {})
+    text = "{ env(inci) pop[1] in[0,1] mul cos in[1,1] add out[0,1] }"
+    program = Program(2, 1, assemble(text))
+    pixels = special_pixels(np.random.default_rng(1), 1001, 2)
+    varied = np.linspace(0, 1, 1001, dtype=np.float32)
+    given = [{"inci": 0.1}, {}, {"inci": varied}, {"inci": 0.2}]
+    results = [np.empty((1001, 1), np.float32) for _ in given]
+    runs.sweep((program,), 2, pixels, given, results, engine=engine)
+    for variables, result in zip(given, results, strict=True):
+        assert not different(result, interpreter.run(program, pixels, variables))
+    # Three of them are of one shape, and so are all other angles.
+    run(program, pixels, {"inci": 0.3}, engine)
+    assert len(native._kept) == (2 if engine is Engine.COMPILED else 0)
+
+
+@ENGINES
+def test_routes_and_no_elements(engine: Engine) -> None:
+    pixels = special_pixels(np.random.default_rng(1), 100, 3)
+    chain = (POLAR, Route((3, None, 0), (0.0, 0.25, 0.0)))
+    found = runs.run(chain, 3, pixels, {}, engine=engine)
+    expected = interpreter.run(POLAR, pixels, {})
+    assert not different(np.ascontiguousarray(found[:, ::2]), expected[:, [3, 0]])
+    assert (found[:, 1] == 0.25).all()
+    assert not different(runs.run((), 3, pixels, {}, engine=engine), pixels)
+    assert runs.run(chain, 3, np.ones((4, 0, 3)), {}, engine=engine).shape == (4, 0, 3)
+    with pytest.raises(ProgramError, match="3 channels are needed"):
+        runs.run(chain, 3, np.ones((4, 2)), {}, engine=engine)
+
+
+def test_the_engine_that_is_done_sooner() -> None:
+    straight = straighten((POLAR,), 3, {})
+    assert not choice.compiled_is_quicker(straight, 10_000, kept=False)
+    assert choice.compiled_is_quicker(straight, 100_000_000, kept=False)
+    assert choice.compiled_is_quicker(straight, 10_000, kept=True)
+
+
+def test_without_llvmlite_all_works_but_what_asks_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(native, "available", lambda: False)
+    monkeypatch.setattr(choice, "compiled_is_quicker", lambda *_: True)
+    pixels = special_pixels(np.random.default_rng(1), 100, 3)
+    expected = interpreter.run(POLAR, pixels, {})
+    assert not different(run(POLAR, pixels, {}, Engine.AUTO), expected)
+    with pytest.raises(BrdfcError, match="llvmlite, which is not installed") as caught:
+        run(POLAR, pixels, {}, Engine.COMPILED)
+    assert "pip install 'brdfc[jit]'" in str(caught.value)
+
+
+def test_engines_by_name() -> None:
+    assert choice.engine_named("blocks") is Engine.BLOCKS
+    with pytest.raises(ValueGivenError, match="no engine 'compilde'"):
+        choice.engine_named("compilde")
+
+
+@pytest.mark.skipif(not native.available(), reason="llvmlite is not installed")
+def test_codes_that_are_dropped_leave_the_others_working(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(native, "KEPT", 2)
+    pixels = np.array([[0.5]], np.float32)
+    for _ in range(2):
+        for count in range(6):
+            program = Program(1, 1, assemble("{ in " + "sq " * count + "out }"))
+            assert run(program, pixels, {}, Engine.COMPILED) == 0.5 ** (2**count)
