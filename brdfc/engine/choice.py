@@ -32,11 +32,12 @@ def engine_named(given: Engine | str) -> Engine:
     return Engine(given)
 
 
-LOADING, COMPILING, COMPILING_STEP = 0.05, 0.015, 0.0008
-"""Seconds: to load the compiler, to compile a chain, and for each of its steps."""
+LOADING, COMPILING, COMPILING_STEP, LIKE_STEPS = 0.03, 0.004, 0.00014, 12
+"""Seconds: to load the compiler, to compile a chain, and for each of its steps; a function is like
+so many steps."""
 BLOCKS_STEP, BLOCKS_FUNCTION = 0.25e-9, 4e-9
 COMPILED_STEP, COMPILED_FUNCTION = 0.05e-9, 1.0e-9
-"""Seconds a pixel on one thread; `benchmarks/engine.py` measures all of these."""
+"""Seconds a pixel on one thread; `benchmarks/engine.py` and `benchmarks/scaling.py` show them."""
 
 
 def compiled_is_quicker(straight: Straight, pixels: int, kept: bool) -> bool:
@@ -50,7 +51,7 @@ def compiled_is_quicker(straight: Straight, pixels: int, kept: bool) -> bool:
     )
     making = 0.0
     if not kept:
-        making = COMPILING + COMPILING_STEP * (len(straight.steps) + 8 * functions)
+        making = COMPILING + COMPILING_STEP * (len(straight.steps) + LIKE_STEPS * functions)
         making += 0.0 if "llvmlite" in sys.modules else LOADING
     return pixels * saved > making
 

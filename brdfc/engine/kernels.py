@@ -48,6 +48,13 @@ def _divide(x: Values, y: Values) -> Values:
     return np.where(y == 0, np.float32(0), x / np.where(y == 0, np.float32(1), y))
 
 
+def _power(x: Any, y: Any) -> Any:
+    """C's pow. Where the exponent is one half for a whole array NumPy takes square roots, which for
+    -0 and minus infinity are something else."""
+    root = (y == 0.5) & ((x == 0) | (x == -np.inf))
+    return np.where(root, np.abs(x), np.power(x, y))
+
+
 def _remainder(x: Values, y: Values) -> Values:
     good = np.isfinite(x) & np.isfinite(y) & (np.abs(y).astype(np.float64) >= 1e-12)
     return np.where(good, np.fmod(x, np.where(good, y, np.float32(1))), np.float32(0))
@@ -94,7 +101,7 @@ BINARY: dict[str, Kernel] = {
     "mul": np.multiply,
     "div": _divide,
     "mod": _remainder,
-    "pow": _single(np.power),
+    "pow": _single(_power),
     "atn2": _single(lambda x, y: np.arctan2(y, x)),
     "lt": lambda x, y: _truth(x < y),
     "le": lambda x, y: _truth(x <= y),

@@ -23,7 +23,7 @@ from brdfc.engine.straight import Straight
 
 KEPT = 64
 """Codes kept, of the shapes used last."""
-WIDEST = 8
+WIDEST = 16
 """Samples of an interleaved pixel, at most, that are taken apart in registers."""
 
 

@@ -135,7 +135,6 @@ _WRITTEN: dict[str, Operation] = {
     "acos": _in_float64(np.arccos),
     "atan": _in_float64(np.arctan),
     "cbrt": _in_float64(np.cbrt),
-    "pow": _in_float64(np.power),
     "atn2": _turned,
     "vmin": _lesser,
     "vmax": _greater,

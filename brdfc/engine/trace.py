@@ -113,6 +113,8 @@ class Trace:
             raise Crooked
         if not any(isinstance(a, Source) for a in arguments):
             return np.float32(compute(name, *(np.asarray(a, np.float32) for a in arguments)))
+        if name == "mul" and any(a == 1 for a in arguments if not isinstance(a, Source)):
+            return next(a for a in arguments if isinstance(a, Source))
         # Constants by their bits: 0 and -0 are two.
         key = (name, *(a if isinstance(a, Source) else a.tobytes() for a in arguments))
         if key not in self.known:
