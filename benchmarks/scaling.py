@@ -198,6 +198,7 @@ def picture(path: str, pixels: Series, operators: Series, threads: Series) -> No
         for k, (name, points) in enumerate(threads.items()):
             line = {"color": SERIES[k // 2], "marker": SHAPES[k], "linestyle": DASHES[k % 2]}
             right.semilogy(*zip(*points, strict=True), label=name, **line)
+        right.set_ylim(bottom=min(y for points in threads.values() for _, y in points) / 10)
         right.set(xlabel="threads", ylabel="Mpixel/s", xticks=range(1, threads_at_hand() + 1))
         titles = ("ward, angles fixed", "multiplications and additions", "threads")
         for axes, title in zip((left, middle, right), titles, strict=True):
@@ -206,7 +207,7 @@ def picture(path: str, pixels: Series, operators: Series, threads: Series) -> No
             axes.legend(frameon=False, fontsize=8)
         return figure
 
-    Path(path).write_bytes(saved(draw, "svg"))
+    Path(path).write_bytes(saved(draw, Path(path).suffix[1:]))
     print(f"wrote {path}")
 
 
