@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from brdfc.cmm.environment import environment_of
 from brdfc.cmm.transforms import (
@@ -88,7 +88,7 @@ class Link:
         )
 
     def sweep(
-        self, pixels: ArrayLike, *, extrapolate: bool = False, **variables: ArrayLike
+        self, pixels: ArrayLike, /, *, extrapolate: bool = False, **variables: ArrayLike
     ) -> Values:
         """Colours of the same pixels for several values of variables, in one pass over the pixels.
 
@@ -115,10 +115,13 @@ class Link:
         self, variables: Mapping[str, ArrayLike], extrapolate: bool
     ) -> tuple[tuple[int, ...], list[Mapping[str, ArrayLike]]]:
         """The variables of every run of a sweep, and the shape that they are to have."""
+        arrays = [_numbers(name, given) for name, given in variables.items()]
         try:
-            values = np.broadcast_arrays(*(np.asarray(v, np.float64) for v in variables.values()))
+            values = np.broadcast_arrays(*arrays)
         except ValueError:
-            sizes = ", ".join(f"{n} has {np.size(v):,}" for n, v in variables.items())
+            sizes = ", ".join(
+                f"{n} has {np.size(v):,}" for n, v in zip(variables, arrays, strict=True)
+            )
             raise ValueGivenError(
                 f"the values of a sweep do not go side by side: {sizes}",
                 hint="give as many values of each, or one",
@@ -268,6 +271,15 @@ def variable_names(link: Link) -> dict[str, str]:
     the signature where the profile does not say."""
     known = transform_variables(link.profile, link.transform)
     return {(d.name if d else s): s for s, d in known}
+
+
+def _numbers(name: str, given: ArrayLike) -> NDArray[np.float64]:
+    try:
+        return np.asarray(given, np.float64)
+    except (TypeError, ValueError):
+        raise ValueGivenError(
+            f"the values of '{name}' are no numbers", hint="angles are given in radians"
+        ) from None
 
 
 def _profile(given: ProfileOrPath) -> Profile:

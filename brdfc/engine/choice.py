@@ -38,22 +38,36 @@ so many steps."""
 BLOCKS_STEP, BLOCKS_FUNCTION = 0.25e-9, 4e-9
 COMPILED_STEP, COMPILED_FUNCTION = 0.05e-9, 1.0e-9
 """Seconds a pixel on one thread; `benchmarks/engine.py` and `benchmarks/scaling.py` show them."""
+MOST_COMPILED, MOST_REGISTERS = 8000, 500
+"""Steps, functions counted as LIKE_STEPS, and registers that are compiled at most. Beyond them the
+compiler's time grows as the square, and what does not fit registers needs a deep stack."""
 
 
-def compiled_is_quicker(straight: Straight, pixels: int, kept: bool) -> bool:
-    """Whether machine code is done sooner, with what it takes to make it where it is not kept."""
-    functions = sum(
-        step.name in FUNCTIONS or step.name.startswith("lab") for step in straight.steps
-    )
-    plain = len(straight.steps) + len(straight.read) + len(straight.outputs) - functions
-    saved = plain * (BLOCKS_STEP - COMPILED_STEP) + functions * (
-        BLOCKS_FUNCTION - COMPILED_FUNCTION
-    )
-    making = 0.0
-    if not kept:
-        making = COMPILING + COMPILING_STEP * (len(straight.steps) + LIKE_STEPS * functions)
-        making += 0.0 if "llvmlite" in sys.modules else LOADING
-    return pixels * saved > making
+def _counts(straight: Straight) -> tuple[int, int]:
+    """Steps, inputs and outputs counted, and functions among them."""
+    functions = sum(s.name in FUNCTIONS or s.name.startswith("lab") for s in straight.steps)
+    return len(straight.steps) + len(straight.read) + len(straight.outputs), functions
+
+
+def can_be_compiled(straight: Straight) -> bool:
+    """Whether machine code is made of it at all."""
+    steps, functions = _counts(straight)
+    heavy = steps + LIKE_STEPS * functions > MOST_COMPILED
+    return not heavy and straight.registers <= MOST_REGISTERS
+
+
+def saved(straight: Straight) -> float:
+    """Seconds a pixel by which machine code is quicker than NumPy."""
+    steps, functions = _counts(straight)
+    plain = (steps - functions) * (BLOCKS_STEP - COMPILED_STEP)
+    return plain + functions * (BLOCKS_FUNCTION - COMPILED_FUNCTION)
+
+
+def making(straight: Straight) -> float:
+    """Seconds that it takes to make machine code."""
+    steps, functions = _counts(straight)
+    loading = 0.0 if "llvmlite" in sys.modules else LOADING
+    return loading + COMPILING + COMPILING_STEP * (steps + LIKE_STEPS * functions)
 
 
 def threads_at_hand() -> int:

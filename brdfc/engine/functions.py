@@ -260,7 +260,15 @@ def power(lanes: Lanes, x: str, y: str) -> str:
     still = lanes.either("and", endless, lanes.test("oeq", "D", size, 1.0))
     still = lanes.either("or", still, lanes.test("oeq", "D", x, 1.0))
     still = lanes.either("or", still, lanes.test("oeq", "D", y, 0.0))
-    return lanes.pick("D", still, 1.0, found)
+    found = lanes.pick("D", still, 1.0, found)
+    # Squares and the like are often exactly half-way between two float32 values; roots nearly so.
+    product = x
+    for whole_exponent in (2.0, 3.0, 4.0):
+        product = lanes.do("fmul", "D", product, x)
+        found = lanes.pick("D", lanes.test("oeq", "D", y, whole_exponent), product, found)
+    above = lanes.test("ogt", "D", x, 0.0)
+    rooted = lanes.either("and", above, lanes.test("oeq", "D", y, 0.5))
+    return lanes.pick("D", rooted, lanes.call("sqrt", "D", x), found)
 
 
 FUNCTIONS: dict[str, Callable[..., str]] = {

@@ -37,17 +37,17 @@ class Job:
 def in_blocks(jobs: Sequence[Job], pixels: Samples, start: int, stop: int) -> None:
     """By NumPy, in blocks that fit the cache."""
     size = BLOCK if stop - start == len(pixels.values) else SHARED_BLOCK
-    most = min(max(1, min(size, HELD // max(1, job.form.registers))) for job in jobs)
-    step = min(most, max(1, stop - start))
-    machines = [Machine(job.form, step) for job in jobs]
+    registers = max(job.form.registers for job in jobs)
+    step = max(1, min(size, HELD // max(1, registers), stop - start))
+    machine = Machine(registers, step)
     with np.errstate(all="ignore"):
         for first in range(start, stop, step):
             last = min(first + step, stop)
             block = pixels.values[first:last]
             channels = [block[:, channel] for channel in range(block.shape[1])]
-            for job, machine in zip(jobs, machines, strict=True):
+            for job in jobs:
                 variables = [values[first:last] for values in job.variables]
-                found = machine.run([*channels, *variables], last - first)
+                found = machine.run(job.form, [*channels, *variables], last - first)
                 for channel, values in enumerate(found):
                     job.results.values[first:last, channel] = values
 

@@ -23,8 +23,8 @@ def bits(value: float) -> int:
 @dataclass
 class Lanes:
     """One function under construction. width: pixels at a time; lines: its text so far; declared:
-    what it calls, by name; known: results of whole functions, so that none is computed twice;
-    block: the label that the text stands under."""
+    what it calls, by name; known: what belongs to a value and is not computed twice: a
+    mask, the same in float64, parts of functions; block: the label that the text stands under."""
 
     width: int
     lines: list[str] = field(default_factory=list)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -55,9 +56,7 @@ def samples(values: Values, widest: int) -> Samples:
 
 def flat(values: Values) -> Values:
     """(..., samples) as (pixels, samples): the same memory wherever that can be."""
-    return (
-        values.reshape(-1, values.shape[-1]) if values.size else values.reshape(0, values.shape[-1])
-    )
+    return values.reshape(math.prod(values.shape[:-1]), values.shape[-1])
 
 
 def shares(count: int, parts: int, least: int, multiple: int) -> Iterator[tuple[int, int]]:

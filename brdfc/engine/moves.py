@@ -1,6 +1,6 @@
 """Operators that only move values: channels, temporaries, and places on the stack.
 
-What the values are does not matter: arrays of pixels, or what stands for them (straight.py).
+What the values are does not matter: arrays of pixels, or what stands for them (trace.py).
 """
 
 from __future__ import annotations

@@ -8,6 +8,7 @@ Results are the interpreter's, but for the rarest ties of the functions in funct
 from __future__ import annotations
 
 import ctypes
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -109,8 +110,20 @@ def code_for(shape: Shape) -> Code:
     return code
 
 
-def is_kept(shape: Shape) -> bool:
-    return shape in _kept
+def kept(shape: Shape) -> bool:
+    """Whether the code for a shape is there."""
+    with _lock:
+        return shape in _kept
+
+
+def _after_fork() -> None:
+    """Another thread may have held the lock."""
+    global _lock
+    _lock = Lock()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_fork)
 
 
 @cache

@@ -9,29 +9,26 @@ but for the rarest ties of functions (functions.py).
 
 from __future__ import annotations
 
+import math
+import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
-from threading import Lock
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from brdfc.calc.program import Program
-from brdfc.calc.verify import verify
-from brdfc.engine import interpreter, native
-from brdfc.engine.choice import Engine, compiled_is_quicker, threads_at_hand
+from brdfc.engine import choice, interpreter, native
+from brdfc.engine.choice import Engine, engine_named, threads_at_hand
+from brdfc.engine.forms import straight_form
 from brdfc.engine.jobs import Compiled, Job, by_code, in_blocks
 from brdfc.engine.kernels import Values
 from brdfc.engine.layout import Samples, flat, samples, shares
-from brdfc.engine.straight import Straight, straighten
-from brdfc.engine.trace import Chain, Crooked, Route
-from brdfc.source.errors import BrdfcError, ProgramError
+from brdfc.engine.trace import Chain, Route
+from brdfc.source.errors import MissingExtraError, ProgramError
 
 Environment = Mapping[str, ArrayLike]
 
-RECENT = 256
-"""Straight forms kept: an image comes in bands, and each is a run of the same chain."""
 SHARE = 1 << 16
 """Pixels that a thread of its own is worth."""
 
@@ -42,7 +39,7 @@ def run(
     pixels: ArrayLike,
     environment: Environment,
     *,
-    engine: Engine = Engine.AUTO,
+    engine: Engine | str = Engine.AUTO,
     threads: int | None = None,
     total: int | None = None,
 ) -> Values:
@@ -51,7 +48,7 @@ def run(
     pixels: (..., channels), taken as float32. environment: variables by signature, as for
     interpreter.run. total: how many pixels are to come in all, where these are a part. Returns
     (..., outputs), float32. Raises ProgramError where a program cannot be proven safe or channels
-    do not fit, BrdfcError where the compiled engine is asked for and llvmlite is not installed.
+    do not fit, MissingExtraError where the compiled engine is asked for and llvmlite is not installed.
     """
     array = np.asarray(pixels, dtype=np.float32)
     result = np.empty((*array.shape[:-1], outputs_of(chain, channels)), np.float32)
@@ -71,38 +68,52 @@ def outputs_of(chain: Chain, channels: int) -> int:
 def sweep(
     chain: Chain,
     channels: int,
-    pixels: Values,
+    pixels: ArrayLike,
     environments: Sequence[Environment],
     results: Sequence[Values],
     *,
-    engine: Engine = Engine.AUTO,
+    engine: Engine | str = Engine.AUTO,
     threads: int | None = None,
     total: int | None = None,
 ) -> None:
-    """The same for several runs over the same pixels, into results (..., outputs) each."""
-    if pixels.ndim == 0 or pixels.shape[-1] != channels:
-        raise ProgramError(f"{channels} channels are needed, the array is {pixels.shape}")
+    """The same for several runs over the same pixels.
+
+    results: an array (..., outputs) of float32 for each, of any strides. Raises as run does, and
+    ValueError for results that cannot take the values.
+    """
+    array = np.asarray(pixels, dtype=np.float32)
+    engine = engine_named(engine)
+    _check(chain, channels, array, len(environments), results)
     if engine is Engine.COMPILED and not native.available():
-        raise BrdfcError(
+        raise MissingExtraError(
             "the compiled engine needs llvmlite, which is not installed",
             hint="pip install 'brdfc[jit]', or leave the engine to be chosen",
         )
-    shape = pixels.shape[:-1]
+    shape = array.shape[:-1]
+    if not math.prod(shape) or not results or not results[0].shape[-1]:
+        return
+    if any(np.may_share_memory(array, result) for result in results):
+        array = array.copy()
     given = [{n: interpreter.variable(v, shape) for n, v in e.items()} for e in environments]
-    if not pixels.size:
-        return
-    forms = [_straight(chain, channels, e, engine) for e in given]
-    if any(form is None for form in forms):
+    if engine is Engine.INTERPRETER:
+        forms = None
+    else:
+        forms = [straight_form(chain, channels, e) for e in given]
+    if forms is None or any(form is None for form in forms):
         for environment, result in zip(environments, results, strict=True):
-            result[...] = _interpreted(chain, pixels, environment)
+            result[...] = _interpreted(chain, array, environment)
         return
-    whole = flat(pixels)
     found = [flat(result) for result in results]
     jobs = [
-        Job(form, [e[n] for n in form.variables], samples(values, native.WIDEST))
+        Job(
+            form,
+            [np.require(e[n], np.float32, ["C", "A"]) for n in form.variables],
+            samples(values, native.WIDEST),
+        )
         for form, e, values in zip(forms, given, found, strict=True)
         if form is not None
     ]
+    whole = flat(array)
     work = _work(jobs, samples(whole, native.WIDEST), engine, total or len(whole))
     parts = list(shares(len(whole), threads or threads_at_hand(), SHARE, 64))
     if len(parts) == 1:
@@ -110,39 +121,25 @@ def sweep(
     else:
         list(_pool().map(work, *zip(*parts, strict=True)))
     for values, result in zip(found, results, strict=True):
-        if not np.shares_memory(values, result):  # its strides have no view as a list of pixels
+        if not np.may_share_memory(values, result):  # no view of it is a list of pixels
             result[...] = values.reshape(result.shape)
 
 
-def _straight(
-    chain: Chain, channels: int, variables: Mapping[str, Values], engine: Engine
-) -> Straight | None:
-    """The straight form of a chain in a run, None where it has none; made once for runs alike."""
-    if engine is Engine.INTERPRETER:
-        return None
-    same = tuple(sorted((n, None if v.ndim else v.tobytes()) for n, v in variables.items()))
-    key = (tuple(map(id, chain)), same)
-    known = _recent.get(key)
-    if known is not None:
-        return known[1]
-    for element in chain:
-        if isinstance(element, Program):
-            verify(element)
-    try:
-        found: Straight | None = straighten(chain, channels, variables)
-    except Crooked:
-        found = None
-    with _one_at_a_time:
-        while len(_recent) >= RECENT:
-            del _recent[next(iter(_recent))]
-        _recent[key] = chain, found
-    return found
-
-
-_Key = tuple[tuple[int, ...], tuple[tuple[str, bytes | None], ...]]
-_recent: dict[_Key, tuple[Chain, Straight | None]] = {}
-"""By the elements themselves, which are kept with the form so that no other takes their place."""
-_one_at_a_time = Lock()
+def _check(
+    chain: Chain, channels: int, pixels: Values, count: int, results: Sequence[Values]
+) -> None:
+    """Machine code trusts addresses: what they lead to is made sure of here."""
+    if pixels.ndim == 0 or pixels.shape[-1] != channels:
+        raise ProgramError(f"{channels} channels are needed, the array is {pixels.shape}")
+    shape = (*pixels.shape[:-1], outputs_of(chain, channels))
+    for result in results:
+        if result.shape != shape or result.dtype != np.float32 or not result.flags.writeable:
+            raise ValueError(
+                f"results are float32 arrays {shape} that can be written to, not "
+                f"{result.dtype} {result.shape}"
+            )
+    if count != len(results):
+        raise ValueError(f"{count} runs, and {len(results)} results")
 
 
 @cache
@@ -150,16 +147,21 @@ def _pool() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(threads_at_hand(), thread_name_prefix="brdfc")
 
 
+if hasattr(os, "register_at_fork"):  # the threads are not in the other process
+    os.register_at_fork(after_in_child=_pool.cache_clear)
+
+
 def _interpreted(chain: Chain, pixels: Values, environment: Environment) -> Values:
     """Element by element over the whole array."""
     values = pixels
     for step in chain:
         if isinstance(step, Route):
-            kept = [values[..., source or 0] for source in step.sources]
-            for channel, default in enumerate(step.defaults):
-                if step.sources[channel] is None:
-                    kept[channel] = np.full_like(kept[channel], default)
-            values = np.stack(kept, axis=-1)
+            routed = np.empty((*values.shape[:-1], len(step.sources)), np.float32)
+            for channel, (source, default) in enumerate(
+                zip(step.sources, step.defaults, strict=True)
+            ):
+                routed[..., channel] = default if source is None else values[..., source]
+            values = routed
         else:
             values = interpreter.run(step, values, environment)
     return values
@@ -170,14 +172,16 @@ Work = Callable[[int, int], None]
 
 
 def _work(jobs: Sequence[Job], pixels: Samples, engine: Engine, total: int) -> Work:
-    """By machine code if it is asked for, or quicker; else by NumPy."""
-    if engine is not Engine.BLOCKS and native.available():
+    """By machine code if it is asked for, or quicker; else by NumPy, and so what is too much to
+    compile."""
+    possible = native.available() and all(choice.can_be_compiled(job.form) for job in jobs)
+    if engine is not Engine.BLOCKS and possible:
         found = [native.shape_of(job.form, pixels.step, job.results.step) for job in jobs]
-        quicker = engine is Engine.COMPILED or any(
-            compiled_is_quicker(job.form, total, native.is_kept(shape))
-            for job, (shape, _) in zip(jobs, found, strict=True)
-        )
-        if quicker:
+        new = {shape: job.form for (shape, _), job in zip(found, jobs, strict=True)}
+        making = sum(choice.making(form) for shape, form in new.items() if not native.kept(shape))
+        saved = total * sum(choice.saved(job.form) for job in jobs)
+        quicker = saved > making and len(new) <= native.KEPT
+        if quicker or engine is Engine.COMPILED:
             codes = [Compiled(native.code_for(shape), constants) for shape, constants in found]
             return partial(by_code, jobs, codes, pixels)
     return partial(in_blocks, jobs, pixels)

@@ -20,19 +20,18 @@ Buffer = NDArray[np.float32]
 class Machine:
     """Registers for blocks of at most so many pixels, and the steps on them."""
 
-    def __init__(self, straight: Straight, pixels: int) -> None:
-        self.straight = straight
-        self.registers = [np.empty(pixels, np.float32) for _ in range(straight.registers)]
+    def __init__(self, registers: int, pixels: int) -> None:
+        self.registers = [np.empty(pixels, np.float32) for _ in range(registers)]
         self.wide = np.empty(pixels, np.float64)
         self.mask = np.empty(pixels, np.bool_)
 
-    def run(self, inputs: Sequence[Values], count: int) -> list[Values]:
-        """Outputs, each (count,) or a constant, of inputs (count,); of the run's registers, so
-        that they are good until the next block."""
+    def run(self, straight: Straight, inputs: Sequence[Values], count: int) -> list[Values]:
+        """Outputs, each (count,) or a constant, of inputs (count,); of the registers, so that they
+        are good until the next run."""
         registers = [r[:count] for r in self.registers]
-        for place in self.straight.read:
+        for place in straight.read:
             registers[place][:] = inputs[place]
-        for step in self.straight.steps:
+        for step in straight.steps:
             arguments = [registers[a] if isinstance(a, int) else a for a in step.arguments]
             out = registers[step.target]
             operation = _WRITTEN.get(step.name)
@@ -40,8 +39,7 @@ class Machine:
                 operation(self, out, *arguments)
             else:
                 out[:] = compute(step.name, *(np.asarray(a) for a in arguments))
-        found = self.straight.outputs
-        return [registers[o] if isinstance(o, int) else np.asarray(o) for o in found]
+        return [registers[o] if isinstance(o, int) else np.asarray(o) for o in straight.outputs]
 
 
 Operation = Callable[..., None]

@@ -37,10 +37,6 @@ class Straight:
     registers: int
     read: tuple[int, ...]
 
-    @property
-    def inputs(self) -> int:
-        return self.channels + len(self.variables)
-
 
 def straighten(chain: Chain, channels: int, environment: Mapping[str, Values]) -> Straight:
     """The straight form of a chain of verified elements in a run; trace.Crooked where it has none.

@@ -29,9 +29,10 @@ from brdfc.engine.kernels import (
 from brdfc.engine.linear import apply_matrix, solve
 from brdfc.engine.moves import move, rearrange
 
-MOST_STEPS, MOST_FOLLOWED = 20_000, 100_000
+MOST_STEPS, MOST_FOLLOWED = 20_000, 1_000_000
 """A chain that comes to more is left to the interpreter: with both sides of every branch, nested
-conditions double the work each. Operations that come again are followed, but are no more steps."""
+conditions double the work each. Instructions and values that are moved are followed, and are no
+steps."""
 
 
 class Crooked(Exception):
@@ -108,9 +109,7 @@ class Trace:
 
     def apply(self, name: str, *arguments: Value) -> Value:
         """An operation, or its result where it is the same for all pixels."""
-        self.followed += 1
-        if self.followed > MOST_FOLLOWED:
-            raise Crooked
+        self.follow_more(10)
         if not any(isinstance(a, Source) for a in arguments):
             return np.float32(compute(name, *(np.asarray(a, np.float32) for a in arguments)))
         if name == "mul" and any(a == 1 for a in arguments if not isinstance(a, Source)):
@@ -123,6 +122,12 @@ class Trace:
             self.known[key] = Source(name, arguments)
             self.made.append(self.known[key])
         return self.known[key]
+
+    def follow_more(self, count: int) -> None:
+        """Count what is followed; Crooked where it is too much."""
+        self.followed += count
+        if self.followed > MOST_FOLLOWED:
+            raise Crooked
 
     def variable(self, signature: str) -> list[Value]:
         """A variable's value, and whether it is defined."""
@@ -153,6 +158,7 @@ class _Run:
 
     def block(self, block: Block) -> None:
         for instruction in block:
+            self.trace.follow_more(10)
             if isinstance(instruction, Op):
                 self.operation(instruction)
             else:
@@ -209,26 +215,36 @@ class _Run:
         self.cases(taken, blocks)
 
     def cases(self, taken: Sequence[Value], blocks: Sequence[Block]) -> None:
-        """The first block whose condition holds, or the last, with one condition fewer."""
-        if not taken:
-            self.block(blocks[-1])
-            return
-        if not isinstance(taken[0], Source):
-            if holds(np.asarray(taken[0])):
-                self.block(blocks[0])
-            else:
-                self.cases(taken[1:], blocks[1:])
-            return
-        state = (list(self.stack), dict(self.temporaries), dict(self.outputs))
-        self.block(blocks[0])
-        one = (self.stack, self.temporaries, self.outputs)
-        self.stack, self.temporaries, self.outputs = state
-        self.cases(taken[1:], blocks[1:])
-        depth = min(len(one[0]), len(self.stack))  # as the interpreter joins them
-        tops = (stack[len(stack) - depth :] for stack in (one[0], self.stack))
-        self.stack = [self.chosen(taken[0], a, b) for a, b in zip(*tops, strict=True)]
-        self.temporaries = self.joined(taken[0], one[1], self.temporaries)
-        self.outputs = self.joined(taken[0], one[2], self.outputs)
+        """The first block whose condition holds, or the last, with one condition fewer.
+
+        Blocks that some pixels may take are followed one after the other, each from here, and
+        joined from the last one back.
+        """
+        ends = []
+        last = blocks[-1]
+        for condition, block in zip(taken, blocks, strict=False):
+            if not isinstance(condition, Source):
+                if not holds(np.asarray(condition)):
+                    continue
+                last = block
+                break
+            before = self.state()
+            self.block(block)
+            ends.append((condition, self.state()))
+            self.stack, self.temporaries, self.outputs = before
+        self.block(last)
+        for condition, (stack, temporaries, outputs) in reversed(ends):
+            depth = min(len(stack), len(self.stack))  # as the interpreter joins them
+            self.trace.follow_more(depth)
+            tops = (values[len(values) - depth :] for values in (stack, self.stack))
+            self.stack = [self.chosen(condition, a, b) for a, b in zip(*tops, strict=True)]
+            self.temporaries = self.joined(condition, temporaries, self.temporaries)
+            self.outputs = self.joined(condition, outputs, self.outputs)
+
+    def state(self) -> tuple[list[Value], dict[int, Value], dict[int, Value]]:
+        """A copy of the state."""
+        self.trace.follow_more(len(self.stack) + len(self.temporaries) + len(self.outputs))
+        return list(self.stack), dict(self.temporaries), dict(self.outputs)
 
     def joined(
         self, condition: Value, taken: dict[int, Value], otherwise: dict[int, Value]

@@ -167,3 +167,50 @@ def test_ninety_degrees_is_inside_and_dark(ward: brdfc.Compiled) -> None:
 def test_a_missing_file_is_said(tmp_path: Path, ward: brdfc.Compiled) -> None:
     with pytest.raises(BrdfcError, match="No such file"):
         brdfc.connect(tmp_path / "none.icc", ward.mvis)
+
+
+@pytest.fixture(scope="module")
+def ward_link() -> brdfc.Link:
+    compiled = brdfc.compile(brdfc.load("ward"))
+    return brdfc.connect(compiled.mid, compiled.mvis, env={"incident": 0.7})
+
+
+def test_a_sweep_is_many_links(ward_link: brdfc.Link) -> None:
+    """By name and by signature, side by side, as a grid, and with what the link has."""
+    pixels = np.random.default_rng(1).uniform(0.1, 0.9, (4, 5, 5)).astype(np.float32)
+    angles = np.array([-0.5, 0.0, 0.5])
+
+    def alone(incident: float, reflection: float) -> np.ndarray:
+        env = {"inci": incident, "refl": reflection}
+        return replace(ward_link, environment=env).apply(pixels)
+
+    found = ward_link.sweep(pixels, reflection=angles)
+    assert found.shape == (3, 4, 5, 3)
+    for k, angle in enumerate(angles):
+        np.testing.assert_array_equal(found[k], alone(np.float32(0.7), angle))
+    pairs = ward_link.sweep(pixels, inci=[0.1, 0.2, 0.3], refl=angles)
+    np.testing.assert_array_equal(pairs[2], alone(0.3, 0.5))
+    grid = ward_link.sweep(pixels, incident=[[0.1], [0.2]], reflection=angles)
+    assert grid.shape == (2, 3, 4, 5, 3)
+    np.testing.assert_array_equal(grid[1, 0], alone(0.2, -0.5))
+    np.testing.assert_array_equal(ward_link.sweep(pixels), ward_link.apply(pixels))
+    assert ward_link.sweep(pixels, reflection=[]).shape == (0, 4, 5, 3)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"reflection": [0.1, 0.2], "incident": [0.1, 0.2, 0.3]}, "do not go side by side"),
+        ({"reflection": "45deg"}, "the values of 'reflection' are no numbers"),
+        ({"reflection": [[0.1], [0.1, 0.2]]}, "the values of 'reflection' are no numbers"),
+        ({"reflektion": 0.1}, "no variable 'reflektion'"),
+        ({"reflection": [0.1, 3.0]}, "outside the profile's range"),
+        ({"reflection": np.nan}, "not a finite number"),
+    ],
+    ids=str,
+)
+def test_sweeps_that_cannot_be(
+    given: dict[str, object], message: str, ward_link: brdfc.Link
+) -> None:
+    with pytest.raises(ValueGivenError, match=message):
+        ward_link.sweep(np.ones((2, 5)), **given)  # type: ignore[arg-type]

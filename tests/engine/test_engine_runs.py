@@ -6,6 +6,9 @@ in the last place of a function, once in a million; hardly a program shows it.
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -216,18 +219,98 @@ def test_routes_and_no_elements(engine: Engine) -> None:
     assert runs.run(chain, 3, np.ones((4, 0, 3)), {}, engine=engine).shape == (4, 0, 3)
     with pytest.raises(ProgramError, match="3 channels are needed"):
         runs.run(chain, 3, np.ones((4, 2)), {}, engine=engine)
+    for wrong in ((POLAR, POLAR), (POLAR, Route((4,), (0.0,)))):
+        with pytest.raises(ProgramError, match="is given 4"):
+            runs.run(wrong, 3, pixels, {}, engine=engine)
+    # Chains without elements are many, and of as many channels as they are given.
+    for channels in (5, 3, 40):
+        values = special_pixels(np.random.default_rng(2), 50, channels)
+        assert not different(runs.run((), channels, values, {}, engine=engine), values)
+
+
+@ENGINES
+def test_no_channels_and_no_outputs(engine: Engine) -> None:
+    constant = Program(0, 2, assemble("{ 1 2 out[0,2] }"))
+    assert runs.run((constant,), 0, np.empty((5, 0)), {}, engine=engine).tolist() == [[1, 2]] * 5
+    assert runs.run((Route((), ()),), 3, np.ones((5, 3)), {}, engine=engine).shape == (5, 0)
+
+
+@ENGINES
+def test_results_that_cannot_take_the_values(engine: Engine) -> None:
+    pixels = np.ones((64, 3), np.float32)
+    fixed = np.frombuffer(bytes(64 * 16), np.float32).reshape(64, 4)
+    wrong = [np.empty((10, 4), np.float32), np.empty((64, 3), np.float32), fixed]
+    wrong += [np.empty((64, 4), kind) for kind in (np.float16, np.int32, ">f4")]
+    for result in wrong:
+        with pytest.raises(ValueError, match="results are float32 arrays"):
+            runs.sweep((POLAR,), 3, pixels, [{}], [result], engine=engine)
+    with pytest.raises(ValueError, match="2 runs, and 1 results"):
+        runs.sweep((POLAR,), 3, pixels, [{}] * 2, [np.empty((64, 4), np.float32)], engine=engine)
+
+
+@ENGINES
+def test_results_over_the_pixels(engine: Engine) -> None:
+    """The values are those of the pixels as they were."""
+    whole = special_pixels(np.random.default_rng(1), 2000, 3).ravel()
+    pixels, result = whole[:3000].reshape(-1, 3), whole[3:3003].reshape(-1, 3)
+    program = Program(3, 3, assemble("{ in[0,3] sq[3] out[0,3] }"))
+    expected = interpreter.run(program, pixels.copy(), {})
+    runs.sweep((program,), 3, pixels, [{}, {}], [result, result], engine=engine)
+    assert not different(np.ascontiguousarray(result), expected)
+
+
+def test_both_sides_of_many_branches_are_not_followed_for_ever() -> None:
+    """Calculators that call each other twice, without an operation in them."""
+    program = Program(1, 1, assemble("{ in out }"))
+    for _ in range(28):
+        text = "{ in in if { calc(0) } else { calc(0) } out }"
+        program = Program(1, 1, assemble(text), (program,))
+    with pytest.raises(Crooked):
+        straighten((program,), 1, {})
+
+
+@ENGINES
+def test_a_selection_of_many_cases(engine: Engine) -> None:
+    cases = " ".join(f"case {{ {k} }}" for k in range(900))
+    program = Program(1, 1, assemble(f"{{ in sel {cases} dflt {{ -1 }} out }}"))
+    pixels = np.array([[0], [7.4], [899], [900], [-3], [np.nan]], np.float32)
+    assert not different(run(program, pixels, {}, engine), interpreter.run(program, pixels, {}))
+
+
+@pytest.mark.skipif(not native.available(), reason="llvmlite is not installed")
+def test_what_is_too_much_to_compile_is_left_to_numpy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(native, "_kept", {})
+    program = Program(1, 1, assemble("{ in " + "exp neg " * 700 + "out }"))
+    pixels = special_pixels(np.random.default_rng(1), 100, 1)
+    found = run(program, pixels, {}, Engine.COMPILED)
+    assert not different(found, interpreter.run(program, pixels, {}))
+    assert not native._kept
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
+def test_threads_after_a_fork() -> None:
+    """The other process has none of the threads of this one."""
+    code = (
+        "import os, numpy as np; from brdfc.engine import runs;"
+        "from brdfc.calc.program import Program; from brdfc.calc.text import assemble;"
+        "chain = (Program(1, 1, assemble('{ in sq out }')),);"
+        "go = lambda: runs.run(chain, 1, np.ones((1 << 18, 1)), {}, threads=2);"
+        "go(); child = os.fork();"
+        "go() if child == 0 else None;"
+        "os._exit(0) if child == 0 else os.waitpid(child, 0)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
 
 
 def test_the_engine_that_is_done_sooner() -> None:
     straight = straighten((POLAR,), 3, {})
-    assert not choice.compiled_is_quicker(straight, 10_000, kept=False)
-    assert choice.compiled_is_quicker(straight, 100_000_000, kept=False)
-    assert choice.compiled_is_quicker(straight, 10_000, kept=True)
+    assert 10_000 * choice.saved(straight) < choice.making(straight)
+    assert 100_000_000 * choice.saved(straight) > choice.making(straight)
 
 
 def test_without_llvmlite_all_works_but_what_asks_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(native, "available", lambda: False)
-    monkeypatch.setattr(choice, "compiled_is_quicker", lambda *_: True)
+    monkeypatch.setattr(choice, "making", lambda _: -1.0)
     pixels = special_pixels(np.random.default_rng(1), 100, 3)
     expected = interpreter.run(POLAR, pixels, {})
     assert not different(run(POLAR, pixels, {}, Engine.AUTO), expected)
