@@ -14,7 +14,7 @@ from brdfc.cmm.rendering import Rendering, Target
 from brdfc.images.counts import Counts, counted
 from brdfc.images.memory import WINDOW_PIXELS
 from brdfc.images.samples import Samples
-from brdfc.images.window import Window
+from brdfc.images.window import Grid, Window
 
 
 @dataclass(frozen=True)
@@ -63,14 +63,14 @@ class Computing:
     def _rendered(
         self, rendering: Rendering, band: NDArray[np.float32], counts: Counts
     ) -> NDArray[Any]:
-        """The values of a page, in pieces of rows: what computing takes beside its result does not
-        grow with the window."""
+        """The values of a page, in pieces: what computing takes beside its result does not grow
+        with the window."""
         rows, columns = band.shape[:2]
-        step = max(1, WINDOW_PIXELS // columns)
         values = np.empty((rows, columns, rendering.samples), self.samples.kind)
-        for top in range(0, rows, step):
-            found, clipped = rendering.counted(band[top : top + step])
-            values[top : top + step], more = self.samples.counted(found)
+        across = min(columns, WINDOW_PIXELS)
+        for piece in Grid(rows, columns, max(1, WINDOW_PIXELS // across), across).windows():
+            found, clipped = rendering.counted(band[piece.part])
+            values[piece.part], more = self.samples.counted(found)
             counts.clipped += clipped + more
         return values
 

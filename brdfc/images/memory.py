@@ -11,7 +11,7 @@ from brdfc.source.errors import ImageError, ValueGivenError
 
 USUAL = 192 * 10**6
 """Bytes that buffers may take, unless another limit is given."""
-WINDOW_PIXELS = 1 << 17
+WINDOW_PIXELS = 1 << 16
 """Pixels of a window, at most, where strips or tiles do not force more; what is read is then still
 in the processor's cache when it is computed with."""
 _FEWEST = 1 << 12

@@ -20,6 +20,12 @@ class Window:
     def pixels(self) -> int:
         return self.rows * self.columns
 
+    @property
+    def part(self) -> tuple[slice, slice]:
+        """What it is of an array (rows, columns, ...)."""
+        rows = slice(self.top, self.top + self.rows)
+        return rows, slice(self.left, self.left + self.columns)
+
 
 @dataclass(frozen=True)
 class Grain:
