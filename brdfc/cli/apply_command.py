@@ -54,6 +54,7 @@ def command(
     tile: int | None,
     memory: str | None,
     resume: bool,
+    scheduler: str | None,
     **how: Any,
 ) -> None:
     """Evaluate IMAGE, a TIFF of coefficients, through a MID and an MVIS, through one profile whose
@@ -105,7 +106,9 @@ def command(
     chosen = renderings[0]
     warn_of_defaults(chosen.link)
     warn_of_display(chosen)
-    wanted = choices(chosen.link, loaded, scale, samples, compression, tile, memory, resume)
+    wanted = choices(
+        chosen.link, loaded, scale, samples, compression, tile, memory, resume, scheduler
+    )
     applied = apply_to_tiff(renderings, image, output, "", image_progress(), wanted)
     for name, count in applied.outside.items():
         said = (

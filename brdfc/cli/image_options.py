@@ -14,8 +14,14 @@ if TYPE_CHECKING:
 
 
 def image_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """--scale, --samples, --compression, --tile, --memory and --resume; see choices."""
+    """What integers mean, what is written and how, limits, and where it is done; see choices."""
     for option in (
+        click.option(
+            "--scheduler",
+            metavar="ADDRESS",
+            help="Have it done by a Dask cluster on a shared storage: tcp://host:8786. Needs "
+            "brdfc[distributed].",
+        ),
         click.option(
             "--resume",
             is_flag=True,
@@ -66,6 +72,7 @@ def choices(
     tile: int | None,
     memory: str | None,
     resume: bool,
+    scheduler: str | None,
 ) -> Choices:
     """How images are read and written, as the options say it."""
     from brdfc.images.job import Choices
@@ -78,6 +85,7 @@ def choices(
         tile=tile or 0,
         memory=USUAL if memory is None else parse_size(memory),
         resume=resume,
+        scheduler=scheduler,
         profiles=tuple(profiles),
     )
 

@@ -10,6 +10,7 @@ from threading import Event
 from brdfc.cmm.rendering import Rendering
 from brdfc.files import refuse_same, whole_file
 from brdfc.images.counts import Counts
+from brdfc.images.filling import fill
 from brdfc.images.job import Choices, Job, prepared
 from brdfc.images.stream import in_order
 from brdfc.images.tiff import KINDS, open_samples
@@ -51,6 +52,11 @@ def apply_to_tiff(
         job = prepared(several, image, target, run, choices)
         if job.format.compressed:
             counts = _compress(job, progress)
+        elif choices.scheduler is not None:
+            from brdfc.images.cluster import fill_on_cluster
+
+            with whole_file(job.target.absolute()) as temporary:
+                counts = fill_on_cluster(job, temporary, choices.scheduler, progress)
         elif choices.resume:
             with unfinished_file(target, job.identity) as unfinished:
                 counts = _fill(job, unfinished, progress)
@@ -72,10 +78,7 @@ def _fill(job: Job, unfinished: Unfinished, progress: Progress) -> Counts:
     with opened_to_fill(unfinished.path) as file:
 
         def work(window: Window) -> tuple[Window, Counts]:
-            pages, counts = job.computing.run(job.image.window(window), window, spoiled)
-            for page, values in enumerate(pages):
-                places.put(file, page, window, values)
-            return window, counts
+            return window, fill(job.image, job.computing, places, file, window, spoiled)
 
         done, row = unfinished.rows * grid.width, Counts()
         for window, counts in in_order(work, grid.windows(unfinished.rows), job.plan.workers):

@@ -27,10 +27,14 @@ from brdfc.source.errors import ImageError
 
 @dataclass(frozen=True)
 class Choices:
-    """How images are read and written. scale: what integers mean, by channel, see scaling.scaling;
-    samples: see samples.samples; compression, tile: see Format; memory: bytes that buffers may
-    take; resume: keep what is done when a sweep is interrupted, and go on from what was kept;
-    profiles: what the file says it came through, the last of the link where none are given."""
+    """How images are read and written.
+
+    scale: what integers mean, by channel, see scaling.scaling; samples: see samples.samples;
+    compression, tile: see Format; memory: bytes that buffers may take; resume: keep what is done
+    when a sweep is interrupted, and go on from what was kept; scheduler: the address of a cluster
+    that does it, see cluster; profiles: what the file says it came through, the last of the link
+    where none are given.
+    """
 
     scale: Mapping[str, Ends] = field(default_factory=dict)
     samples: str | None = None
@@ -38,6 +42,7 @@ class Choices:
     tile: int = 0
     memory: int = USUAL
     resume: bool = False
+    scheduler: str | None = None
     profiles: tuple[Profile, ...] = ()
 
 
@@ -103,11 +108,14 @@ def prepared(
         choices.compression,
         rendering.to is Target.SRGB,
     )
-    if form.compressed and choices.resume:
+    if form.compressed and (choices.resume or choices.scheduler is not None):
         raise ImageError(
-            "compressed pages cannot be resumed: where a strip lies depends on those before it",
-            hint="leave out --compression or --resume",
+            "compressed pages are written from first to last, and can neither be resumed nor "
+            "written by many: where a strip lies depends on those before it",
+            hint="leave out --compression",
         )
+    if choices.scheduler is not None and choices.resume:
+        raise ImageError("a run on a cluster cannot be resumed", hint="leave out --resume")
     _check_room(target, form, len(renderings))
     profiles = choices.profiles or (link.profile,)
     texts = tuple(described(each, profiles, kind, scaled, run) for each in renderings)
@@ -117,7 +125,7 @@ def prepared(
         grain = Grain(form.tile, grain.columns)
     cost = _cost(computing, image, form)
     plan = planned(image.height, image.width, grain, cost, choices.memory, image.where)
-    opened = CoefficientImage(image.segments, image.where, scaled)
+    opened = image.scaled(scaled)
     identity = _identity(opened, renderings, profiles, form, texts)
     return Job(opened, computing, form, texts, Path(target), plan, identity)
 

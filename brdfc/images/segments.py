@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from brdfc.images.window import Grain, Window
 from brdfc.source.errors import ImageError
 
+State = tuple[int, int]
 SEGMENT_LIMIT = 1 << 30
 """Bytes that a strip or a tile may decode to."""
 _LONGER = 1 << 16
@@ -27,13 +28,14 @@ CODECS = "pip install 'brdfc[codecs]'"
 class Segments:
     """A page of an open TIFF file: height, width, channels, and the kind of its samples.
 
-    grain: what is read without a segment being decoded twice. Reading is by place, so that any
+    grain: what is read without a segment being decoded twice; state: of the file, what changes when
+    it is written. Reading is by place, so that any
     number of threads can do it at once.
     """
 
     def __init__(self, stream: BinaryIO, page: Any, where: str) -> None:
         self._file = stream.fileno()
-        self._state = _state(self._file)
+        self.state = _state(self._file)
         self._page, self._where = page, where
         self.planes, depth, self.height, self.width, together = map(int, page.shaped)
         self.channels: int = self.planes * together
@@ -79,7 +81,7 @@ class Segments:
                 self._read_decoded(plane, samples, window)
         if self._plain and self._page.parent.byteorder != _NATIVE:
             planes.byteswap(inplace=True)
-        if _state(self._file) != self._state:
+        if _state(self._file) != self.state:
             raise ImageError("the file changed while it was read", where=self._where)
         return planes[0] if self.planes == 1 else np.moveaxis(planes[..., 0], 0, -1)
 
@@ -166,7 +168,7 @@ class Segments:
                 where=self._where,
             )
         offsets, counts = self._offsets[:needed], self._counts[:needed]
-        size = self._state[0]
+        size = self.state[0]
         # Compared without a sum, which could overflow.
         beyond = (offsets < 0) | (counts < 0) | (counts > size) | (offsets > size - counts)
         if beyond.any():
@@ -209,7 +211,7 @@ class Segments:
             )
 
 
-def _state(file: int) -> tuple[int, int]:
+def _state(file: int) -> State:
     """What changes when a file is written: its size, and when it was."""
     found = os.fstat(file)
     return found.st_size, found.st_mtime_ns

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -44,6 +44,10 @@ class CoefficientImage:
     segments: Segments
     where: str
     scaling: Scaling | None = None
+
+    def scaled(self, scaling: Scaling | None) -> CoefficientImage:
+        """The same, with a scaling of its integers."""
+        return replace(self, scaling=scaling)
 
     @property
     def height(self) -> int:
