@@ -20,7 +20,7 @@ _STRIP_BYTES = 1 << 18
 """Bytes of a strip, about; what a reader takes at once."""
 _LARGEST = 2**32 - 2**25
 """Bytes of samples that a TIFF holds with everything around them; a BigTIFF has no such limit."""
-_TILES = 16
+TILES = 16
 """What the sides of a tile are multiples of, by the specification."""
 
 
@@ -42,8 +42,8 @@ class Format:
             raise ImageError(
                 f"'{self.compression}' is no compression", hint=", ".join(COMPRESSIONS)
             )
-        if self.tile < 0 or self.tile % _TILES:
-            raise ImageError(f"tiles of {self.tile} pixels", hint=f"multiples of {_TILES} are TIFF")
+        if self.tile < 0 or self.tile % TILES:
+            raise ImageError(f"tiles of {self.tile} pixels", hint=f"multiples of {TILES} are TIFF")
 
     @property
     def compressed(self) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -16,7 +15,7 @@ from brdfc.icc.profile import Profile
 from brdfc.images.computing import Computing, columns
 from brdfc.images.counts import Counts
 from brdfc.images.description import described
-from brdfc.images.format import Format, encoder
+from brdfc.images.format import TILES, Format, encoder
 from brdfc.images.memory import USUAL, Cost, Plan, planned
 from brdfc.images.samples import Ends, samples
 from brdfc.images.scaling import scaling
@@ -104,7 +103,7 @@ def prepared(
         image.width,
         rendering.samples,
         kind.kind,
-        choices.tile,
+        _tile(image, choices),
         choices.compression,
         rendering.to is Target.SRGB,
     )
@@ -128,6 +127,15 @@ def prepared(
     opened = image.scaled(scaled)
     identity = _identity(opened, renderings, profiles, form, texts)
     return Job(opened, computing, form, texts, Path(target), plan, identity)
+
+
+def _tile(image: CoefficientImage, choices: Choices) -> int:
+    """The side of the result's tiles. Compressed strips of a tiled source would need whole rows of
+    its tiles in memory; the result is tiled then too."""
+    grain = image.segments.grain
+    if choices.tile or choices.compression == "none" or not image.segments.tiled:
+        return choices.tile
+    return grain.rows if grain.rows == grain.columns and grain.rows % TILES == 0 else 256
 
 
 def _check_room(target: str | Path, form: Format, pages: int) -> None:
@@ -161,11 +169,11 @@ def _identity(
     texts: Sequence[str],
 ) -> dict[str, str]:
     """What makes a run the same one: its source, profiles, variables and result."""
-    state = os.stat(image.where)
+    size, written = image.segments.state
     environments = [sorted(r.link.environment.items()) for r in renderings]
     matrices = [repr((r.white, r.observer, r.adaptation)) for r in renderings]
     return {
-        "source": f"{state.st_size} bytes of {state.st_mtime_ns}",
+        "source": f"{size} bytes of {written}",
         "profiles": _digest(*(p.source or p.to_bytes() for p in profiles)),
         "variables": _digest(repr(environments).encode()),
         "options": _digest(repr((form, matrices, texts)).encode()),

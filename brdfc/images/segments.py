@@ -43,7 +43,7 @@ class Segments:
         self.kind: np.dtype[Any] = page.dtype.newbyteorder("=")
         if depth != 1 or not self.height or not self.width:
             raise ImageError("rows and columns of pixels are needed", where=where)
-        tiled = page.is_tiled
+        self.tiled = tiled = bool(page.is_tiled)
         self._rows = page.tilelength if tiled else min(page.rowsperstrip, self.height)
         self._columns = page.tilewidth if tiled else self.width
         if self._rows < 1 or self._columns < 1:
