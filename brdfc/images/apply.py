@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Event
@@ -81,13 +82,15 @@ def _fill(job: Job, unfinished: Unfinished, progress: Progress) -> Counts:
             return window, fill(job.image, job.computing, places, file, window, spoiled)
 
         done, row = unfinished.rows * grid.width, Counts()
-        for window, counts in in_order(work, grid.windows(unfinished.rows), job.plan.workers):
-            row.add(counts)
-            if window.left + window.columns == grid.width:
-                unfinished.reached(window.top + window.rows, row, file)
-                row = Counts()
-            done += window.pixels
-            progress(done, grid.pixels)
+        windows = grid.windows(unfinished.rows)
+        with closing(in_order(work, windows, job.plan.workers)) as results:
+            for window, counts in results:
+                row.add(counts)
+                if window.left + window.columns == grid.width:
+                    unfinished.reached(window.top + window.rows, row, file)
+                    row = Counts()
+                done += window.pixels
+                progress(done, grid.pixels)
     job.refuse_faults(unfinished.counts)
     return unfinished.counts
 
@@ -99,7 +102,7 @@ def _compress(job: Job, progress: Progress) -> Counts:
     whole, grid = Counts(), job.plan.grid
     done, pixels = 0, grid.pixels * len(job.descriptions)
 
-    def segments(page: int) -> Iterator[bytes]:
+    def segments(page: int) -> Generator[bytes]:
         nonlocal done
         computing = job.computing.page(page)
 
@@ -108,11 +111,12 @@ def _compress(job: Job, progress: Progress) -> Counts:
             encoded = [part for v in pages for part in job.format.encoded(window, v)]
             return window, encoded, counts
 
-        for window, encoded, counts in in_order(work, grid.windows(), job.plan.workers):
-            whole.add(counts if page == 0 else Counts(clipped=counts.clipped))
-            yield from encoded
-            done += window.pixels
-            progress(done, pixels)
+        with closing(in_order(work, grid.windows(), job.plan.workers)) as results:
+            for window, encoded, counts in results:
+                whole.add(counts if page == 0 else Counts(clipped=counts.clipped))
+                yield from encoded
+                done += window.pixels
+                progress(done, pixels)
         job.refuse_faults(whole)
 
     with whole_file(job.target) as temporary:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import TypeVar
 
@@ -13,7 +13,7 @@ Result = TypeVar("Result")
 
 def in_order(
     work: Callable[[Part], Result], parts: Iterable[Part], workers: int
-) -> Iterator[Result]:
+) -> Generator[Result]:
     """The results of work on each part, in the order of the parts; as many are under way, or done
     and not taken yet, as there are workers.
 

@@ -59,8 +59,8 @@ def unfinished_file(target: str | Path, run: Mapping[str, str]) -> Iterator[Unfi
     """A file beside the target that is renamed to it when the block ends, and kept with its journal
     when that is interrupted or fails.
 
-    run: what makes this run, by name. Raises
-    ImageError where a run of something else was left there, or another process is at it.
+    run: what makes this run, by name. Raises ImageError where a run of something else was left
+    there, or another process is at it.
     """
     final = Path(target)
     part, journal = (final.parent / f".{final.name}.{end}" for end in ("part", "journal"))

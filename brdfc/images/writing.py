@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from io import FileIO
 from itertools import repeat
@@ -84,7 +84,7 @@ class _Holes(FileIO):
 
 
 def write_compressed(
-    path: Path, form: Format, count: int, pages: Iterable[tuple[str, Iterator[bytes]]]
+    path: Path, form: Format, count: int, pages: Iterable[tuple[str, Generator[bytes]]]
 ) -> None:
     """Write so many pages, of a description and its compressed strips or tiles each, in their
     order; all are taken to their ends."""
@@ -92,9 +92,10 @@ def write_compressed(
 
     with tifffile.TiffWriter(path, bigtiff=form.big(count)) as tiff:
         for description, segments in pages:
-            tiff.write(segments, **form.options(description))
-            for _ in segments:  # what comes after the last one, such as an error
-                raise AssertionError("more segments than the page has")
+            with closing(segments):
+                tiff.write(segments, **form.options(description))
+                for _ in segments:  # what comes after the last one, such as an error
+                    raise AssertionError("more segments than the page has")
 
 
 def write_colours(
