@@ -4,7 +4,7 @@ import math
 
 import click
 
-from brdfc.cli.options import row_progress
+from brdfc.cli.options import image_progress
 
 
 @click.command("angles")
@@ -64,7 +64,7 @@ def command(
         raise click.UsageError(f"--width takes a number above 0, not {width:g}")
     light_at = _vector(light, "--light", distant)
     scene = Arrangement(light_at, _vector(camera, "--camera", distant), geometry, distant, width)
-    faced = angles_to_tiff(normals, output, scene, heights, coefficients, row_progress())
+    faced = angles_to_tiff(normals, output, scene, heights, coefficients, image_progress())
     for count, what in ((faced.from_light, "light"), (faced.from_camera, "camera")):
         if count:
             click.echo(f"note: {count:,} pixels face away from the {what}: 90 degrees", err=True)

@@ -1,22 +1,26 @@
 from __future__ import annotations
 
+import signal
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from brdfc.cli.colour_options import rendered, rendering_options
+from brdfc.cli.image_options import choices, image_options
 from brdfc.cli.options import (
     environment_option,
     extrapolate_option,
     geometry_option,
+    image_progress,
     pairs,
-    row_progress,
     warn_of_defaults,
     warn_of_display,
 )
 from brdfc.cli.search_options import end_progress, shown_progress
+from brdfc.cli.sweep_options import swept
 
 if TYPE_CHECKING:
+    from brdfc.cmm.rendering import Rendering
     from brdfc.compiled import Compiled
 
 
@@ -36,6 +40,7 @@ if TYPE_CHECKING:
     help="With a model: CIEDE2000 that the colours may be off. Default: the scene's, or 0.01.",
 )
 @geometry_option
+@image_options
 def command(
     files: tuple[str, ...],
     output: str,
@@ -43,13 +48,24 @@ def command(
     scene: str | None,
     tolerance: float | None,
     geometry: str | None,
+    scale: tuple[str, ...],
+    samples: str | None,
+    compression: str,
+    tile: int | None,
+    memory: str | None,
+    resume: bool,
+    scheduler: str | None,
     **how: Any,
 ) -> None:
-    """Evaluate IMAGE, a float32 TIFF of coefficients, through a MID and an MVIS, through one
-    profile whose device values they are, or through a model compiled for exactly this image.
+    """Evaluate IMAGE, a TIFF of coefficients, through a MID and an MVIS, through one profile whose
+    device values they are, or through a model compiled for exactly this image.
 
-    Its samples are the channels in the order `brdfc compile` prints them. The output is a TIFF:
-    float32 X, Y, Z, with Y = 1 for white, unless --to says otherwise.
+    Its samples are the channels in the order `brdfc compile` prints them: floats, or integers with
+    a --scale. The output is a TIFF: float32 X, Y, Z, with Y = 1 for white, unless --to and
+    --samples say otherwise. Images of any size are read, computed and written in parts.
+
+    A variable with several values, `a=1,2` or `a=-60deg..60deg:5deg`, makes a sweep: a page for
+    each.
 
     \b
     Example:
@@ -58,29 +74,42 @@ def command(
       brdfc apply ward_mid.icc ward_mvis.icc coefficients.tif -o picture.tif --to sRGB
       brdfc apply ward_mid.icc ward_mvis.icc coefficients.tif -o under_a.tif --adapt A
       brdfc apply ward coefficients.tif -o xyz.tif --env incident=40deg --env reflection=10deg
+      brdfc apply ward_mid.icc ward_mvis.icc scan.tif -o lobe.tif --scale 0..1 --samples uint16 \\
+            --env incident=40deg --env reflection=-60deg..60deg:5deg --resume
     """
     from brdfc.checker import is_profile
     from brdfc.files import refuse_same
+    from brdfc.icc.profile import Profile
     from brdfc.images.apply import apply_to_tiff
 
     *profiles, image = files
     if not profiles:
         raise click.UsageError("give the profiles first, then the image")
     refuse_same([output], files)
+    _stop_when_told()
+    pages = swept(environment)
+    if resume and len(pages) == 1:
+        raise click.UsageError("--resume is for sweeps: variables with several values")
     if len(profiles) == 1 and not is_profile(profiles[0]):
         if how["extrapolate"]:
             raise click.UsageError("--extrapolate is for profiles: a model is compiled for the run")
+        if len(pages) > 1:
+            raise click.UsageError("a sweep is for profiles: a model is compiled for one run")
         saved = _Compiled(profiles[0], image, environment, scene, tolerance, geometry, how["to"])
-        chosen = rendered([saved.compiled.mid, saved.compiled.mvis], environment, **how)
+        loaded = [saved.compiled.mid, saved.compiled.mvis]
     else:
         if scene is not None or tolerance is not None or geometry is not None:
             raise click.UsageError("--scene, --tolerance and --geometry are a model's")
         saved = None
-        chosen = rendered(profiles, environment, **how)
+        loaded = [Profile.load(path) for path in profiles]
+    renderings = [rendered(loaded, page, **how) for page in pages]
+    chosen = renderings[0]
     warn_of_defaults(chosen.link)
     warn_of_display(chosen)
-    run = ", ".join(environment) or "default angles"
-    applied = apply_to_tiff(chosen, image, output, run, row_progress())
+    wanted = choices(
+        chosen.link, loaded, scale, samples, compression, tile, memory, resume, scheduler
+    )
+    applied = apply_to_tiff(renderings, image, output, "", image_progress(), wanted)
     for name, count in applied.outside.items():
         said = (
             "the profile was compiled for; their colours may be farther off"
@@ -90,14 +119,29 @@ def command(
         click.echo(f"note: {count:,} samples of '{name}' lie outside the range {said}", err=True)
     if applied.clipped:
         click.echo(
-            f"note: {applied.clipped:,} pixels lie outside what sRGB can show; each component is "
+            f"note: {applied.clipped:,} pixels lie outside what {_held(chosen)}; each component is "
             "clipped to it",
             err=True,
         )
-    click.echo(f"{applied.pixels:,} pixels")
+    click.echo(f"{applied.pixels:,} pixels" + (f" of {len(pages)} pages" if pages[1:] else ""))
     if saved is not None:
         saved.report(image)
     click.echo(f"wrote {output}")
+
+
+def _held(chosen: Rendering) -> str:
+    from brdfc.cmm.rendering import Target
+
+    return "sRGB can show" if chosen.to is Target.SRGB else "the integers stand for"
+
+
+def _stop_when_told() -> None:
+    """Make an end that is asked for clean up as an interruption does."""
+
+    def stop(number: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, stop)
 
 
 class _Compiled:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+import time
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -55,17 +56,40 @@ def whole_number(least: int, most: int) -> Callable[[click.Context, click.Parame
     return parsed
 
 
-def row_progress() -> Callable[[int, int], None]:
-    """Shows how much of an image is done, in percent, on a terminal's standard error."""
-    shown = 0
+def image_progress() -> Callable[[int, int], None]:
+    """Shows how many pixels of an image are done, how fast, and the time left, on a terminal's
+    standard error."""
+    begun: tuple[float, int] | None = None
+    shown = 0.0
 
     def progress(done: int, total: int) -> None:
-        nonlocal shown
-        if sys.stderr.isatty() and 100 * done // total != shown:
-            shown = 100 * done // total
-            click.echo(f"\r{shown:3d} %", nl=done == total, err=True)
+        nonlocal begun, shown
+        if not sys.stderr.isatty():
+            return
+        now = time.monotonic()
+        if begun is None:  # what was done before this run says nothing of its speed
+            begun = (now, done)
+        if done < total and now - shown < _REDRAWN:
+            return
+        shown = now
+        rate = (done - begun[1]) / max(now - begun[0], 1e-9)
+        left = f"{_duration((total - done) / rate)} left" if rate and done < total else ""
+        text = f"{100 * done // total:3d} %  {rate / 1e6:.3g} Mpixel/s  {left}"
+        click.echo(f"\r{text:<50}", nl=done == total, err=True)
 
     return progress
+
+
+_REDRAWN = 0.2
+"""Seconds between two lines of progress."""
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours} h {minutes:02d} min"
+    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
 
 
 def environment_option(function: Callable[..., Any]) -> Callable[..., Any]:

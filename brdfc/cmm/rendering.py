@@ -64,7 +64,7 @@ class Rendering:
 
     white: of the XYZ that comes out, or that CIELAB is relative to. observer: the matrix from
     reflectances to XYZ, if they are; to_standard: the profile's own way to D50, if it is taken;
-    adaptation: the matrix after that, if any.
+    adaptation: the matrix after that, if any. bits: of a sample of sRGB, 8 or 16.
     """
 
     link: Link
@@ -74,6 +74,7 @@ class Rendering:
     to_standard: Pipeline | None = None
     adaptation: Array | None = None
     note: str = ""
+    bits: int = 8
 
     @property
     def samples(self) -> int:
@@ -82,8 +83,10 @@ class Rendering:
 
     @property
     def dtype(self) -> Any:
-        """Of the result: 8 bits for sRGB, float32 for all else."""
-        return np.uint8 if self.to is Target.SRGB else np.float32
+        """Of the result: integers for sRGB, float32 for all else."""
+        if self.to is not Target.SRGB:
+            return np.float32
+        return np.uint8 if self.bits == 8 else np.uint16
 
     def apply(self, pixels: ArrayLike) -> NDArray[Any]:
         """(..., samples) for pixels (..., channels)."""
@@ -97,7 +100,7 @@ class Rendering:
             return values, 0
         exact = self.colours(values)
         if self.to is Target.SRGB:
-            picture, outside = srgb(exact)
+            picture, outside = srgb(exact, self.bits)
             return picture, int(outside.sum())
         if self.to is Target.LAB:
             exact = lab(exact, self.white)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -23,8 +25,9 @@ def srgb_display(white: XYZ) -> Display:
     )
 
 
-def srgb(xyz: ArrayLike) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-    """8-bit sRGB of XYZ (..., 3) under D50, Y = 1 for white, adapted to D65 by linear Bradford.
+def srgb(xyz: ArrayLike, bits: int = 8) -> tuple[NDArray[Any], NDArray[np.bool_]]:
+    """sRGB in 8 or 16 bits of XYZ (..., 3) under D50, Y = 1 for white, adapted to D65 by linear
+    Bradford.
 
     Returns the picture, and which pixels (...) lay outside what sRGB can show; those are clipped,
     component by component.
@@ -35,5 +38,7 @@ def srgb(xyz: ArrayLike) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
         illuminant=colour.XYZ_to_xy(np.array(D50)),
         chromatic_adaptation_transform="Bradford",
     )
-    outside = ((encoded < -0.5 / 255) | (encoded > 255.5 / 255)).any(axis=-1)
-    return np.round(np.clip(encoded, 0, 1) * 255).astype(np.uint8), outside
+    most = 2**bits - 1
+    outside = ((encoded < -0.5 / most) | (encoded > (most + 0.5) / most)).any(axis=-1)
+    kind = np.uint8 if bits == 8 else np.uint16
+    return np.round(np.clip(encoded, 0, 1) * most).astype(kind), outside

@@ -1,1 +1,1 @@
-"""Images of coefficients in, images of colours out; row bands, never the whole image in memory."""
+"""Images of coefficients in, images of colours out; in windows, never the whole image in memory."""

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from brdfc.files import refuse_same
 from brdfc.images.directions import NAMES, Arrangement, Faced, angles, positions
-from brdfc.images.tiff import CoefficientImage, open_samples, write_colours
+from brdfc.images.tiff import CoefficientImage, open_samples
+from brdfc.images.writing import write_colours
 from brdfc.source.errors import ImageError
 
 _KINDS = (np.uint8, np.uint16, np.float32)
@@ -30,7 +31,7 @@ def angles_to_tiff(
     normals: a TIFF of three samples: float32 components, or 8 or 16 bit integers for -1..1, as
     normal maps have them. heights: a float32 TIFF of one sample, z in the scene's unit.
     coefficients: a float32 TIFF whose samples come first in the target, so that it is what a
-    profile with the angles among its channels takes.
+    profile with the angles among its channels takes. progress gets pixels done and in all.
     Raises ImageError for images that do not fit, and for normals that have no direction.
     """
     refuse_same([target], [normals, heights, coefficients])
@@ -61,7 +62,7 @@ def angles_to_tiff(
                     found = np.concatenate([more, found], axis=-1)
                 yield found
                 top += len(band)
-                progress(top, image.height)
+                progress(top * image.width, image.height * image.width)
 
         names = NAMES[scene.geometry]
         samples = len(names) + (others.channels if others else 0)

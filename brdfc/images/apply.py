@@ -1,26 +1,31 @@
-"""Linked profiles on an image of coefficients, band by band."""
+"""Linked profiles on an image of coefficients, window by window; several of them for a sweep."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from threading import Event
 
-import numpy as np
-from numpy.typing import NDArray
+from brdfc.cmm.rendering import Rendering
+from brdfc.files import refuse_same, whole_file
+from brdfc.images.counts import Counts
+from brdfc.images.filling import fill
+from brdfc.images.job import Choices, Job, prepared
+from brdfc.images.stream import in_order
+from brdfc.images.tiff import KINDS, open_samples
+from brdfc.images.unfinished import Unfinished, unfinished_file
+from brdfc.images.window import Window
+from brdfc.images.writing import laid_out, lay_out, opened_to_fill, write_compressed
 
-from brdfc.cmm.link import Link
-from brdfc.cmm.rendering import Rendering, Target
-from brdfc.files import refuse_same
-from brdfc.images.tiff import WRITING, Band, open_coefficients, write_colours
-from brdfc.source.errors import ImageError
+Progress = Callable[[int, int], None]
 
 
 @dataclass
 class Applied:
-    """What was done: pixels, for each channel how many samples lay outside its range, and how many
-    pixels were clipped to what sRGB can show."""
+    """What was done: pixels of the source, for each channel how many samples lay outside its range,
+    and how many pixels were clipped to what the samples of the result can hold."""
 
     pixels: int = 0
     clipped: int = 0
@@ -28,109 +33,93 @@ class Applied:
 
 
 def apply_to_tiff(
-    rendering: Rendering,
+    rendering: Rendering | Sequence[Rendering],
     source: str | Path,
     target: str | Path,
-    run: str,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    run: str = "",
+    progress: Progress = lambda done, total: None,
+    choices: Choices = Choices(),  # noqa: B008 - frozen
 ) -> Applied:
-    """Evaluate a float32 TIFF of coefficients to a TIFF of what the rendering gives; run: the
-    variables, for the description in it.
+    """Evaluate a TIFF of coefficients to a TIFF of what the rendering gives, or to a page for each
+    of several: of the same profiles with other variables. run: more to say in its description.
 
     The target appears whole or not at all. Raises ImageError for an image that does not fit the
-    link, or that holds NaN or infinity anywhere (with their count). progress gets rows done and
-    rows in all.
+    link, that holds NaN or infinity anywhere (with their count), that cannot be read, or that
+    changes while it is. progress gets pixels done and pixels in all.
     """
-    link = rendering.link
+    several = (rendering,) if isinstance(rendering, Rendering) else tuple(rendering)
     refuse_same([target], [source])
-    with open_coefficients(source) as image:
-        names = link.channels
-        columns = _columns(link, image.channels)
-        if columns is None:
-            raise ImageError(
-                f"the image has {image.channels} samples a pixel, the profile takes {len(names)}: "
-                f"{', '.join(names)}",
-                where=str(source),
-                hint=WRITING if image.channels == 1 else None,
-            )
-        applied = Applied(pixels=image.height * image.width)
-        faults = _Faults()
+    with open_samples(source, KINDS) as image:
+        job = prepared(several, image, target, run, choices)
+        if job.format.compressed:
+            counts = _compress(job, progress)
+        elif choices.scheduler is not None:
+            from brdfc.images.cluster import fill_on_cluster
 
-        def bands() -> Iterator[NDArray[Any]]:
-            top = 0
-            for whole in image.bands():
-                band = whole[..., columns]
-                faults.count(band, top)
-                _count_outside(link, whole, applied)
-                if faults.total:  # the rest is only counted: nothing will be written
-                    yield np.zeros((*band.shape[:2], rendering.samples), rendering.dtype)
-                else:
-                    colours, clipped = rendering.counted(band)
-                    applied.clipped += clipped
-                    yield colours
-                top += len(band)
-                progress(top, image.height)
-            if faults.total:
-                row, column, channel = faults.first
-                raise ImageError(
-                    f"{faults.total} of {applied.pixels * len(names):,} samples are NaN or "
-                    f"infinite, the first at row {row}, column {column}, '{names[channel]}'",
-                    where=str(source),
-                    hint="mask or fill them first; nothing was written",
-                )
-
-        shape = (image.height, image.width, rendering.samples)
-        write_colours(target, shape, bands(), f"{_NAMES[rendering.to]}; {_said(rendering, run)}")
-    return applied
+            with whole_file(job.target.absolute()) as temporary:
+                counts = fill_on_cluster(job, temporary, choices.scheduler, progress)
+        elif choices.resume:
+            with unfinished_file(target, job.identity) as unfinished:
+                counts = _fill(job, unfinished, progress)
+        else:
+            with whole_file(target) as temporary:
+                counts = _fill(job, Unfinished(temporary), progress)
+        return Applied(image.height * image.width, counts.clipped, counts.outside)
 
 
-_ALL = slice(None)
+def _fill(job: Job, unfinished: Unfinished, progress: Progress) -> Counts:
+    """All pages in one pass over the source, each window to where it belongs."""
+    spoiled = Event()
+    grid = job.plan.grid
+    if unfinished.rows < 0:
+        places = lay_out(unfinished.path, job.format, job.descriptions)
+        unfinished.rows = 0
+    else:
+        places = laid_out(unfinished.path, job.format)
+    with opened_to_fill(unfinished.path) as file:
+
+        def work(window: Window) -> tuple[Window, Counts]:
+            return window, fill(job.image, job.computing, places, file, window, spoiled)
+
+        done, row = unfinished.rows * grid.width, Counts()
+        windows = grid.windows(unfinished.rows)
+        with closing(in_order(work, windows, job.plan.workers)) as results:
+            for window, counts in results:
+                row.add(counts)
+                if window.left + window.columns == grid.width:
+                    unfinished.reached(window.top + window.rows, row, file)
+                    row = Counts()
+                done += window.pixels
+                progress(done, grid.pixels)
+    job.refuse_faults(unfinished.counts)
+    return unfinished.counts
 
 
-def _columns(link: Link, count: int) -> slice | list[int] | None:
-    """The samples of an image that a link takes: those of the image it was compiled for, by their
-    names, where there are as many; else all."""
-    if count == len(link.samples) and set(link.channels) <= set(link.samples):
-        return [link.samples.index(name) for name in link.channels]
-    return _ALL if count == len(link.channels) else None
+def _compress(job: Job, progress: Progress) -> Counts:
+    """Page after page, a pass over the source each: where a strip lies is known when those before
+    it are compressed."""
+    spoiled = Event()
+    whole, grid = Counts(), job.plan.grid
+    done, pixels = 0, grid.pixels * len(job.descriptions)
 
+    def segments(page: int) -> Generator[bytes]:
+        nonlocal done
+        computing = job.computing.page(page)
 
-_NAMES = {
-    Target.XYZ: "XYZ, Y = 1 for white",
-    Target.LAB: "CIELAB",
-    Target.SRGB: "sRGB",
-    Target.SPECTRUM: "reflectances",
-}
+        def work(window: Window) -> tuple[Window, list[bytes], Counts]:
+            pages, counts = computing.run(job.image.window(window), window, spoiled)
+            encoded = [part for v in pages for part in job.format.encoded(window, v)]
+            return window, encoded, counts
 
+        with closing(in_order(work, grid.windows(), job.plan.workers)) as results:
+            for window, encoded, counts in results:
+                whole.add(counts if page == 0 else Counts(clipped=counts.clipped))
+                yield from encoded
+                done += window.pixels
+                progress(done, pixels)
+        job.refuse_faults(whole)
 
-def _said(rendering: Rendering, run: str) -> str:
-    return "; ".join(part for part in (rendering.note, run) if part)
-
-
-@dataclass
-class _Faults:
-    """Samples that are no numbers: how many, and where the first is (row, column, channel)."""
-
-    total: int = 0
-    first: tuple[int, int, int] = (0, 0, 0)
-
-    def count(self, band: Band, top: int) -> None:
-        bad = ~np.isfinite(band)
-        found = int(bad.sum())
-        if found and not self.total:
-            row, column, channel = (int(i) for i in np.argwhere(bad)[0])
-            self.first = (top + row, column, channel)
-        self.total += found
-
-
-def _count_outside(link: Link, band: Band, applied: Applied) -> None:
-    """Samples outside what the profile states, also of those it does not read: it says nothing
-    about them, so the user is told."""
-    given = link.samples if band.shape[-1] == len(link.samples) else link.channels
-    for described in link.described:
-        places = [given.index(n) for n in described.component_names if n in given]
-        values = band[..., places]
-        low, high = described.reach
-        outside = int(((values < low) | (values > high)).sum())
-        if outside:
-            applied.outside[described.name] = applied.outside.get(described.name, 0) + outside
+    with whole_file(job.target) as temporary:
+        pages = ((text, segments(page)) for page, text in enumerate(job.descriptions))
+        write_compressed(temporary, job.format, len(job.descriptions), pages)
+    return whole

@@ -1,18 +1,19 @@
-"""TIFF files of coefficients and of colours, read and written in bands of rows."""
+"""TIFF files of coefficients, opened and read in windows or in bands of rows."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfc.files import whole_file
+from brdfc.images.scaling import Scaling
+from brdfc.images.segments import SEGMENT_LIMIT, Segments
+from brdfc.images.window import Window
 from brdfc.source.errors import ImageError
 
 WRITING = (
@@ -21,31 +22,58 @@ WRITING = (
 )
 
 Band = NDArray[np.float32]
+KINDS = (np.float32, np.float16, np.uint16, np.uint8)
+"""The kinds of samples that coefficients can have; integers with a scaling."""
 _KIND_NAMES: dict[type, str] = {
     np.float32: "32-bit floats",
+    np.float16: "16-bit floats",
     np.uint8: "8-bit",
     np.uint16: "16-bit integers",
 }
-_LARGEST = 2**32 - 2**25
-"""Bytes of samples that a TIFF holds with everything around them."""
 BAND_PIXELS = 1 << 18
 """Pixels a band holds: a few megabytes, whatever the size of the image."""
 
 
 @dataclass(frozen=True)
 class CoefficientImage:
-    """An open image: samples are (height, width, channels), read from the file as they are used.
-    greatest: of integer samples, the greatest they can be; 0 for floats."""
+    """An open image, (height, width, channels), read from the file as it is used.
 
-    height: int
-    width: int
-    channels: int
-    samples: Any
-    greatest: int = 0
+    scaling: what integers mean; without one they are given as they are.
+    """
+
+    segments: Segments
+    where: str
+    scaling: Scaling | None = None
+
+    def scaled(self, scaling: Scaling | None) -> CoefficientImage:
+        """The same, with a scaling of its integers."""
+        return replace(self, scaling=scaling)
+
+    @property
+    def height(self) -> int:
+        return self.segments.height
+
+    @property
+    def width(self) -> int:
+        return self.segments.width
+
+    @property
+    def channels(self) -> int:
+        return self.segments.channels
+
+    @property
+    def kind(self) -> np.dtype[Any]:
+        return self.segments.kind
+
+    @property
+    def greatest(self) -> int:
+        """Of integer samples, the greatest they can be; 0 for floats."""
+        return 0 if self.kind.kind == "f" else int(np.iinfo(self.kind).max)
 
     @property
     def rows_per_band(self) -> int:
-        return max(1, BAND_PIXELS // max(1, self.width))
+        whole = self.segments.grain.rows
+        return max(1, BAND_PIXELS // self.width // whole) * whole
 
     def bands(self) -> Iterator[Band]:
         """The image from top to bottom, (rows, width, channels) float32 each."""
@@ -54,7 +82,27 @@ class CoefficientImage:
 
     def rows(self, part: slice) -> Band:
         """Some rows, (rows, width, channels) float32."""
-        return np.ascontiguousarray(self.samples[part], dtype=np.float32)
+        top, bottom, _ = part.indices(self.height)
+        size = (bottom - top) * self.width * self.channels * 4
+        if size > SEGMENT_LIMIT:
+            raise ImageError(
+                f"{bottom - top} rows of it take {size:,} bytes, and at most {SEGMENT_LIMIT:,} are "
+                "read at once",
+                where=self.where,
+                hint="write it in strips or tiles of fewer rows",
+            )
+        return self.window(Window(top, 0, bottom - top, self.width))
+
+    def window(self, window: Window) -> Band:
+        """A part, (rows, columns, channels) float32; of a planar image a view of planes.
+
+        Raises ImageError for what cannot be read, and where the file has changed since it was
+        opened.
+        """
+        samples = self.segments.read(window)
+        if self.scaling is not None:
+            return self.scaling.apply(samples)
+        return samples.astype(np.float32, copy=False)
 
 
 @contextmanager
@@ -70,17 +118,19 @@ def open_samples(path: str | Path, kinds: Sequence[type]) -> Iterator[Coefficien
     anything else."""
     import tifffile
 
-    try:
-        tiff = tifffile.TiffFile(path)
-    except OSError as error:
-        raise ImageError(f"cannot be read: {error.strerror or error}", where=str(path)) from error
-    except Exception as error:  # a hostile file can make the library raise anything
-        raise ImageError(f"not a TIFF image: {error}", where=str(path)) from error
-    with tiff:
-        yield _image(tiff, str(path), kinds)
+    with ExitStack() as stack:
+        try:
+            stream = stack.enter_context(Path(path).open("rb"))
+        except OSError as error:
+            raise ImageError(f"cannot be read: {error.strerror}", where=str(path)) from error
+        try:
+            tiff = stack.enter_context(tifffile.TiffFile(stream))
+        except Exception as error:  # a hostile file can make the library raise anything
+            raise ImageError(f"not a TIFF image: {error}", where=str(path)) from error
+        yield CoefficientImage(_segments(stream, tiff, str(path), kinds), str(path))
 
 
-def _image(tiff: Any, where: str, kinds: Sequence[type]) -> CoefficientImage:
+def _segments(stream: BinaryIO, tiff: Any, where: str, kinds: Sequence[type]) -> Segments:
     try:
         pages = len(tiff.pages)
         page = tiff.pages[0]
@@ -103,66 +153,8 @@ def _image(tiff: Any, where: str, kinds: Sequence[type]) -> CoefficientImage:
     if axes not in ("YXS", "SYX", "YX"):
         raise ImageError(f"rows, columns and samples are needed, not axes {axes}", where=where)
     try:
-        samples = _mapped(tiff, page) if page.is_memmappable else page.asarray()
-    except Exception as error:  # truncated data, unknown compression
-        raise ImageError(f"its samples cannot be read: {error}", where=where) from error
-    if axes == "SYX":
-        samples = np.moveaxis(samples, 0, -1)
-    elif axes == "YX":
-        samples = samples[..., None]
-    height, width, channels = samples.shape
-    greatest = 0 if kind.kind == "f" else int(np.iinfo(kind).max)
-    return CoefficientImage(height, width, channels, samples, greatest)
-
-
-def _mapped(tiff: Any, page: Any) -> Any:
-    """The samples of an uncompressed image where they lie in the file."""
-    return np.memmap(
-        tiff.filehandle.path,
-        dtype=page.dtype.newbyteorder(tiff.byteorder),
-        mode="r",
-        offset=page.dataoffsets[0],
-        shape=page.shape,
-    )
-
-
-def write_colours(
-    path: str | Path,
-    shape: tuple[int, int, int],
-    bands: Iterable[NDArray[Any]],
-    description: str,
-) -> None:
-    """Write (height, width, samples) as a TIFF, whole or not at all; bands from top to bottom.
-
-    Bytes are a picture, three samples of red, green and blue; numbers of another kind are numbers.
-    """
-    import tifffile
-
-    from brdfc import __version__
-
-    iterator = iter(bands)
-    first = next(iterator)
-    picture = first.dtype == np.uint8
-    kind: dict[str, Any] = {"photometric": "rgb"}
-    if not picture:
-        more = ("unspecified",) * (shape[-1] - 1)
-        kind = {"photometric": "minisblack", "extrasamples": more}
-
-    def strips() -> Iterator[NDArray[Any]]:
-        yield first
-        yield from iterator
-
-    # The size of a TIFF is limited to 4 GiB, and that of a BigTIFF is not.
-    big = math.prod(shape) * first.dtype.itemsize > _LARGEST
-    with whole_file(path) as temporary, tifffile.TiffWriter(temporary, bigtiff=big) as tiff:
-        tiff.write(
-            strips(),
-            shape=shape,
-            dtype=first.dtype,
-            rowsperstrip=len(first),
-            planarconfig="contig",
-            description=description,
-            software=f"brdfc {__version__}",
-            metadata=None,
-            **kind,
-        )
+        return Segments(stream, page, where)
+    except ImageError:
+        raise
+    except Exception as error:  # as above
+        raise ImageError(f"a damaged TIFF image: {error}", where=where) from error

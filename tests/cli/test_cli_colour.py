@@ -71,16 +71,16 @@ def test_reflectances_come_under_any_light(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "kind", "description"),
+    ("options", "kind", "facts"),
     [
-        ([], np.float32, "XYZ, Y = 1 for white; incident=40deg"),
-        (["--to", "Lab"], np.float32, "CIELAB; incident=40deg"),
-        (["--to", "sRGB"], np.uint8, "sRGB; incident=40deg"),
-        (["--adapt", "D65"], np.float32, "XYZ, Y = 1 for white; adapted to D65; incident=40deg"),
+        ([], np.float32, ["XYZ, Y = 1 for white", "white: 0.97 1 0.484"]),
+        (["--to", "Lab"], np.float32, ["CIELAB", "white: 0.97 1 0.484"]),
+        (["--to", "sRGB"], np.uint8, ["sRGB"]),
+        (["--adapt", "D65"], np.float32, ["XYZ, Y = 1 for white", "adapted to D65"]),
     ],
 )
 def test_images_say_what_they_are(
-    options: list[str], kind: type, description: str, folder: Path, tmp_path: Path
+    options: list[str], kind: type, facts: list[str], folder: Path, tmp_path: Path
 ) -> None:
     out = tmp_path / "out.tif"
     profiles = ["lamp_mid.icc", "lamp_mvis.icc"]
@@ -88,7 +88,15 @@ def test_images_say_what_they_are(
     assert done.returncode == 0, done.stderr
     with tifffile.TiffFile(out) as written:
         page = written.pages[0]
-        assert (page.shape, page.dtype, page.description) == ((4, 5, 3), kind, description)
+        assert (page.shape, page.dtype) == ((4, 5, 3), kind)
+        told = page.description.split("\n")
+    assert told[: len(facts)] == facts
+    assert {"incident=40deg", "reflection=0deg", "transform: M2B0"} <= set(told)  # defaults too
+    profiles = [line for line in told if line.startswith("profile: ")]
+    assert [line.split(", ID ")[0].split(" (")[1] for line in profiles] == [
+        "coefficients)",
+        "appearance)",
+    ]
 
 
 def test_an_image_of_reflectances(folder: Path, tmp_path: Path) -> None:
