@@ -8,6 +8,7 @@ import click
 from brdfc.cli.colour_options import rendered, rendering_options
 from brdfc.cli.image_options import choices, image_options
 from brdfc.cli.options import (
+    engine_option,
     environment_option,
     extrapolate_option,
     geometry_option,
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     help="With a model: CIEDE2000 that the colours may be off. Default: the scene's, or 0.01.",
 )
 @geometry_option
+@engine_option
 @image_options
 def command(
     files: tuple[str, ...],
@@ -53,6 +55,8 @@ def command(
     compression: str,
     tile: int | None,
     memory: str | None,
+    threads: int | None,
+    engine: str,
     resume: bool,
     scheduler: str | None,
     **how: Any,
@@ -102,12 +106,12 @@ def command(
             raise click.UsageError("--scene, --tolerance and --geometry are a model's")
         saved = None
         loaded = [Profile.load(path) for path in profiles]
-    renderings = [rendered(loaded, page, **how) for page in pages]
+    renderings = [rendered(loaded, page, **how, engine=engine) for page in pages]
     chosen = renderings[0]
     warn_of_defaults(chosen.link)
     warn_of_display(chosen)
     wanted = choices(
-        chosen.link, loaded, scale, samples, compression, tile, memory, resume, scheduler
+        chosen.link, loaded, scale, samples, compression, tile, memory, threads, resume, scheduler
     )
     applied = apply_to_tiff(renderings, image, output, "", image_progress(), wanted)
     for name, count in applied.outside.items():

@@ -29,6 +29,12 @@ def image_options(function: Callable[..., Any]) -> Callable[..., Any]:
             "earlier run kept.",
         ),
         click.option(
+            "--threads",
+            type=click.IntRange(1, 1024),
+            metavar="N",
+            help="How many compute at once. Default: as many as there are processors.",
+        ),
+        click.option(
             "--memory",
             metavar="SIZE",
             help="What buffers may take in all: 256MB, 1GiB. Default: 192MB.",
@@ -71,6 +77,7 @@ def choices(
     compression: str,
     tile: int | None,
     memory: str | None,
+    threads: int | None,
     resume: bool,
     scheduler: str | None,
 ) -> Choices:
@@ -85,6 +92,7 @@ def choices(
         tile=tile or 0,
         memory=USUAL if memory is None else parse_size(memory),
         resume=resume,
+        threads=threads,
         scheduler=scheduler,
         profiles=tuple(profiles),
     )

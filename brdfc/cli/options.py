@@ -112,11 +112,23 @@ def extrapolate_option(function: Callable[..., Any]) -> Callable[..., Any]:
     )(function)
 
 
+def engine_option(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The --engine option of commands that run profiles over many pixels."""
+    return click.option(
+        "--engine",
+        type=click.Choice(["auto", "compiled", "blocks", "interpreter"]),
+        default="auto",
+        help="Machine code (needs brdfc[jit]), NumPy in blocks, or an operator at a time. Default: "
+        "what is done first.",
+    )(function)
+
+
 def connected(
     profiles: Sequence[str | Profile],
     environment: Iterable[str],
     transform: str | None = None,
     extrapolate: bool = False,
+    engine: str = "auto",
 ) -> Link:
     """Profiles linked, variables read in the units that the last declares.
 
@@ -143,7 +155,7 @@ def connected(
         # A foreign profile does not say what its variables are; the unit the user writes does.
         declared = types.get(name) or TYPES["angle" if text[-3:] in ("deg", "rad") else "number"]
         values[name] = parse_value(text, declared, name)[0]
-    return connect(*loaded, env=values, transform=transform, extrapolate=extrapolate)
+    return connect(*loaded, env=values, transform=transform, extrapolate=extrapolate, engine=engine)
 
 
 def warn_of_display(chosen: Rendering) -> None:

@@ -8,7 +8,7 @@ angles among its channels, needs no other.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -86,6 +86,26 @@ class Link:
             threads=self.threads,
             total=total,
         )
+
+    def together(
+        self, others: Sequence[Link], pixels: ArrayLike, total: int | None = None
+    ) -> list[Values]:
+        """The colours of this link and of others of the same profiles, in one pass over pixels."""
+        array = np.asarray(pixels, dtype=np.float32)
+        links = [self, *others]
+        shape = (*array.shape[:-1], self.outputs)
+        results = [np.empty(shape, np.float32) for _ in links]
+        runs.sweep(
+            self.chain,
+            self.inputs,
+            array,
+            [link.environment for link in links],
+            results,
+            engine=self.engine,
+            threads=self.threads,
+            total=total,
+        )
+        return results
 
     def sweep(
         self, pixels: ArrayLike, /, *, extrapolate: bool = False, **variables: ArrayLike

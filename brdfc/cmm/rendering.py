@@ -95,8 +95,11 @@ class Rendering:
     def counted(self, pixels: ArrayLike) -> tuple[NDArray[Any], int]:
         """The same, and how many pixels lay outside what sRGB can show; those are clipped to it,
         component by component."""
-        values = self.link.apply(pixels)
-        if self.to is Target.SPECTRUM:
+        return self.finished(self.link.apply(pixels))
+
+    def finished(self, values: NDArray[np.float32]) -> tuple[NDArray[Any], int]:
+        """As counted, of the link's own values (..., outputs)."""
+        if self.to is Target.SPECTRUM or (self.to is Target.XYZ and self.plain):
             return values, 0
         exact = self.colours(values)
         if self.to is Target.SRGB:
@@ -105,6 +108,11 @@ class Rendering:
         if self.to is Target.LAB:
             exact = lab(exact, self.white)
         return exact.astype(np.float32), 0
+
+    @property
+    def plain(self) -> bool:
+        """Whether the link's values are the colours that are wanted."""
+        return self.observer is None and self.to_standard is None and self.adaptation is None
 
     def colours(self, values: ArrayLike) -> Array:
         """XYZ (..., 3) in float64, adapted, of values of the link (..., outputs)."""

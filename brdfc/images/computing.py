@@ -19,13 +19,15 @@ from brdfc.images.window import Grid, Window
 
 @dataclass(frozen=True)
 class Computing:
-    """renderings: one a page, of the same channels. columns: the samples of a pixel that their link
-    takes, of so many channels. It holds no file, so that another process can compute too."""
+    """renderings: one a page, of the same profiles. columns: the samples of a pixel that their link
+    takes, of so many channels. total: the pixels of the image. It holds no file, so that another
+    process can compute too."""
 
     renderings: tuple[Rendering, ...]
     samples: Samples
     columns: tuple[int, ...]
     channels: int
+    total: int
 
     @property
     def link(self) -> Link:
@@ -34,7 +36,7 @@ class Computing:
     @property
     def working(self) -> int:
         """Bytes that a pixel takes while it is computed with, about."""
-        floats = 4 * (3 * len(self.columns) + 2 * self.link.outputs)
+        floats = 4 * (3 * len(self.columns) + (1 + len(self.renderings)) * self.link.outputs)
         plain = self.renderings[0].to in (Target.XYZ, Target.SPECTRUM)
         return floats + (8 * 3 * 2 if plain else 8 * 3 * 8)
 
@@ -58,21 +60,22 @@ class Computing:
             return [], counts
         if self.columns != tuple(range(self.channels)):
             band = band[..., list(self.columns)]
-        return [self._rendered(rendering, band, counts) for rendering in self.renderings], counts
+        return self._rendered(band, counts), counts
 
-    def _rendered(
-        self, rendering: Rendering, band: NDArray[np.float32], counts: Counts
-    ) -> NDArray[Any]:
-        """The values of a page, in pieces: what computing takes beside its result does not grow
+    def _rendered(self, band: NDArray[np.float32], counts: Counts) -> list[NDArray[Any]]:
+        """The values of each page, in pieces: what computing takes beside its result does not grow
         with the window."""
         rows, columns = band.shape[:2]
-        values = np.empty((rows, columns, rendering.samples), self.samples.kind)
+        first, *others = self.renderings
+        pages = [np.empty((rows, columns, r.samples), self.samples.kind) for r in self.renderings]
         across = min(columns, WINDOW_PIXELS)
         for piece in Grid(rows, columns, max(1, WINDOW_PIXELS // across), across).windows():
-            found, clipped = rendering.counted(band[piece.part])
-            values[piece.part], more = self.samples.counted(found)
-            counts.clipped += clipped + more
-        return values
+            found = first.link.together([r.link for r in others], band[piece.part], self.total)
+            for rendering, values, page in zip(self.renderings, found, pages, strict=True):
+                finished, clipped = rendering.finished(values)
+                page[piece.part], more = self.samples.counted(finished)
+                counts.clipped += clipped + more
+        return pages
 
 
 def columns(link: Link, count: int) -> list[int] | None:

@@ -30,7 +30,8 @@ class Choices:
 
     scale: what integers mean, by channel, see scaling.scaling; samples: see samples.samples;
     compression, tile: see Format; memory: bytes that buffers may take; resume: keep what is done
-    when a sweep is interrupted, and go on from what was kept; scheduler: the address of a cluster
+    when a sweep is interrupted, and go on from what was kept; threads: as many as there are
+    processors where None; scheduler: the address of a cluster
     that does it, see cluster; profiles: what the file says it came through, the last of the link
     where none are given.
     """
@@ -41,6 +42,7 @@ class Choices:
     tile: int = 0
     memory: int = USUAL
     resume: bool = False
+    threads: int | None = None
     scheduler: str | None = None
     profiles: tuple[Profile, ...] = ()
 
@@ -82,6 +84,8 @@ def prepared(
     """The job of an open image; ImageError for an image that does not fit the link, or choices that
     cannot be kept to."""
     kind = samples(choices.samples, renderings[0])
+    # Windows are shared among threads, not the pixels of one.
+    renderings = [replace(each, link=replace(each.link, threads=1)) for each in renderings]
     if kind.kind != renderings[0].dtype and kind.ends is None:  # a picture of 16 bits
         renderings = [replace(each, bits=8 * kind.kind.itemsize) for each in renderings]
     rendering = renderings[0]
@@ -118,12 +122,16 @@ def prepared(
     _check_room(target, form, len(renderings))
     profiles = choices.profiles or (link.profile,)
     texts = tuple(described(each, profiles, kind, scaled, run) for each in renderings)
-    computing = Computing(tuple(renderings), kind, tuple(wanted), image.channels)
+    computing = Computing(
+        tuple(renderings), kind, tuple(wanted), image.channels, image.height * image.width
+    )
     grain = form.grain.joined(image.segments.grain, image.width)
     if form.compressed and form.tile:  # in the order of the file, a row of tiles at a time
         grain = Grain(form.tile, grain.columns)
     cost = _cost(computing, image, form)
-    plan = planned(image.height, image.width, grain, cost, choices.memory, image.where)
+    plan = planned(
+        image.height, image.width, grain, cost, choices.memory, choices.threads, image.where
+    )
     opened = image.scaled(scaled)
     identity = _identity(opened, renderings, profiles, form, texts)
     return Job(opened, computing, form, texts, Path(target), plan, identity)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import re
 from dataclasses import dataclass
 
+from brdfc.engine.choice import threads_at_hand
 from brdfc.images.window import Grain, Grid
 from brdfc.source.errors import ImageError, ValueGivenError
 
@@ -50,7 +50,15 @@ class Plan:
     workers: int
 
 
-def planned(height: int, width: int, grain: Grain, cost: Cost, memory: int, where: str) -> Plan:
+def planned(
+    height: int,
+    width: int,
+    grain: Grain,
+    cost: Cost,
+    memory: int,
+    threads: int | None,
+    where: str,
+) -> Plan:
     """Windows of whole grains, as large as the limit and the cache allow; ImageError where not even
     one grain keeps to the limit."""
     rows, columns = min(height, grain.rows), min(width, grain.columns)
@@ -64,18 +72,13 @@ def planned(height: int, width: int, grain: Grain, cost: Cost, memory: int, wher
             hint=f"--memory {_shown(least)}",
         )
     # One more than there are processors: while one waits for a file, the others compute.
-    workers = min(processors() + 1, memory // least)
+    workers = min((threads or threads_at_hand()) + 1, memory // least)
     pixels = WINDOW_PIXELS
     while pixels > fewest and cost.window(pixels) * workers > memory:
         pixels //= 2
     across = min(width, max(1, pixels // rows // columns) * columns)
     down = max(1, pixels // across // rows) * rows if across == width else rows
     return Plan(Grid(height, width, down, across), workers)
-
-
-def processors() -> int:
-    """How many processors this process may run on."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _shown(size: int) -> str:
