@@ -163,19 +163,11 @@ def break_even(series: Series, cold: float, given: Case) -> None:
         f"\nthe first machine code of a process takes {cold * 1e3:.0f} ms; it pays from "
         f"{measured:,.0f} pixels on"
     )
-    pixels = 1000
-    while not _by_rule(form, pixels):
-        pixels = int(pixels * 1.1)
-    print(f"the rule takes it from {pixels:,} on")
-
-
-def _by_rule(form: object, pixels: int) -> bool:
-    loaded = sys.modules.pop("llvmlite", None)
-    try:
-        return choice.compiled_is_quicker(form, pixels, kept=False)  # type: ignore[arg-type]
-    finally:
-        if loaded is not None:
-            sys.modules["llvmlite"] = loaded
+    loaded = sys.modules.pop("llvmlite", None)  # as in a process that has not loaded it
+    pixels = choice.making(form) / choice.saved(form)
+    if loaded is not None:
+        sys.modules["llvmlite"] = loaded
+    print(f"the rule takes it from {pixels:,.0f} on")
 
 
 def picture(path: str, pixels: Series, operators: Series, threads: Series) -> None:

@@ -27,8 +27,10 @@ def ciede2000(first: ArrayLike, second: ArrayLike, white: ArrayLike = D50) -> ND
     return ciede2000_of_lab(lab(first, white), lab(second, white))
 
 
-def ciede2000_of_lab(first: ArrayLike, second: ArrayLike) -> NDArray[np.float64]:
-    """As ciede2000, of CIELAB (..., 3)."""
+def ciede2000_of_lab(
+    first: ArrayLike, second: ArrayLike, factors: tuple[float, float, float] = (1.0, 1.0, 1.0)
+) -> NDArray[np.float64]:
+    """As ciede2000, of CIELAB (..., 3), with factors kL, kC, kH."""
     l1, a1, b1 = np.moveaxis(np.asarray(first, dtype=np.float64), -1, 0)
     l2, a2, b2 = np.moveaxis(np.asarray(second, dtype=np.float64), -1, 0)
     mean_chroma = (np.hypot(a1, b1) + np.hypot(a2, b2)) / 2
@@ -58,6 +60,8 @@ def ciede2000_of_lab(first: ArrayLike, second: ArrayLike) -> NDArray[np.float64]
     s_h = 1 + 0.015 * chroma * t
     rotation = -2 * np.sqrt(chroma**7 / (chroma**7 + 25.0**7))
     rotation *= np.sin(np.radians(60 * np.exp(-(((hue - 275) / 25) ** 2))))
-    lightness_term, chroma_term, hue_term = (l2 - l1) / s_l, (c2 - c1) / s_c, d_hue / s_h
+    k_l, k_c, k_h = factors
+    lightness_term = (l2 - l1) / (k_l * s_l)
+    chroma_term, hue_term = (c2 - c1) / (k_c * s_c), d_hue / (k_h * s_h)
     squared = lightness_term**2 + chroma_term**2 + hue_term**2 + rotation * chroma_term * hue_term
     return np.asarray(np.sqrt(np.maximum(squared, 0.0)))

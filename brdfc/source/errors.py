@@ -9,6 +9,7 @@
     +-- SpectrumError         a table of a spectrum or of colour matching functions
     +-- SceneError            a scene file, or what it asks of a model
     +-- ImageError            an image that cannot be read, applied or written
+    +-- FitError              measurements that a model cannot be fitted to, or a fit that is none
     +-- SelfCheckError        a compiled program that does not agree with its model
     +-- MissingExtraError     an optional package that this needs is not installed
 
@@ -78,3 +79,7 @@ class SelfCheckError(BrdfcError):
 
 class MissingExtraError(BrdfcError):
     """An optional package is needed; the message names the extra to install."""
+
+
+class FitError(BrdfcError):
+    """Measurements that a model cannot be fitted to."""

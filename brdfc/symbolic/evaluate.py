@@ -85,22 +85,66 @@ def evaluate_parts(
     done = dict(known or {})
     with np.errstate(all="ignore"):
         for e in walk(expression):
-            if e in done:
-                continue
-            arguments = [done[a] for a in e.arguments]
-            if e.operator == "const":
-                done[e] = np.array([nearest(e.value)])
-            elif e.operator == "pi":
-                done[e] = np.array([np.pi])
-            elif e.operator == "quantity":
-                done[e] = np.asarray(values[e.name], dtype=np.float64)
-            elif e.operator == "vector":
-                done[e] = np.concatenate(np.broadcast_arrays(*arguments), axis=-1)
-            elif e.operator == "component":
-                done[e] = arguments[0][..., e.index : e.index + 1]
-            else:
-                done[e] = np.asarray(_FLOAT64[e.operator](*arguments))
+            if e not in done:
+                done[e] = _step(e, done, values)
     return done
+
+
+def _step(
+    e: Expression,
+    done: Mapping[Expression, NDArray[np.float64]],
+    values: Mapping[str, NDArray[np.float64]],
+) -> NDArray[np.float64]:
+    """The value of an expression whose arguments are done."""
+    match e.operator:
+        case "const":
+            return np.array([nearest(e.value)])
+        case "pi":
+            return np.array([np.pi])
+        case "quantity":
+            return np.asarray(values[e.name], dtype=np.float64)
+    arguments = [done[a] for a in e.arguments]
+    match e.operator:
+        case "vector":
+            return np.concatenate(np.broadcast_arrays(*arguments), axis=-1)
+        case "component":
+            return arguments[0][..., e.index : e.index + 1]
+    return np.asarray(_FLOAT64[e.operator](*arguments))
+
+
+class Evaluation:
+    """Float64 values of several expressions, again and again at the same points.
+
+    points: arrays (..., components) of the quantities that stay the same; what depends on nothing
+    else is computed once.
+    """
+
+    def __init__(
+        self, roots: Sequence[Expression], points: Mapping[str, NDArray[np.float64]]
+    ) -> None:
+        self.roots = tuple(roots)
+        every = dict.fromkeys(e for root in roots for e in walk(root))
+        fixed: dict[Expression, bool] = {}
+        for e in every:
+            here = e.operator != "quantity" or e.name in points
+            fixed[e] = here and all(fixed[a] for a in e.arguments)
+        self._known: dict[Expression, NDArray[np.float64]] = {}
+        for e in every:
+            if fixed[e]:
+                self._known |= evaluate_parts(e, points, self._known)
+        changing = [e for e in every if not fixed[e]]
+        used = {a for e in changing for a in e.arguments} | set(roots)
+        self._known = {e: v for e, v in self._known.items() if e in used}
+        self._changing = changing
+
+    def __call__(self, values: Mapping[str, NDArray[np.float64]]) -> list[NDArray[np.float64]]:
+        """An array (..., width or 1) for each root, not broadcast; values: as for evaluate, of the
+        quantities that are left."""
+        done = dict(self._known)
+        with np.errstate(all="ignore"):
+            for e in self._changing:
+                done[e] = _step(e, done, values)
+        return [done[root] for root in self.roots]
 
 
 _Number = Any

@@ -24,10 +24,10 @@ def proposals(expression: Expression) -> Iterator[tuple[str, Expression, Express
 
     for part in _greatest(expression):
         symbols: dict[Any, Expression] = {}
-        formula = _to_sympy(part, symbols)
+        formula = to_sympy(part, symbols)
         for name, function in (("SymPy simplify", sympy.simplify), ("SymPy fu", _fu)):
             try:
-                back = _from_sympy(function(formula), symbols)
+                back = from_sympy(function(formula), symbols)
             except (NotImplementedError, TypeError, ValueError, ArithmeticError):
                 continue
             if back is not None and back is not part:
@@ -58,7 +58,8 @@ def _greatest(expression: Expression) -> list[Expression]:
     return found
 
 
-def _to_sympy(e: Expression, symbols: dict[Any, Expression]) -> Any:
+def to_sympy(e: Expression, symbols: dict[Any, Expression]) -> Any:
+    """SymPy's form of a scalar expression; symbols: gets what stands for what."""
     import sympy
 
     if e.operator == "const":
@@ -74,7 +75,7 @@ def _to_sympy(e: Expression, symbols: dict[Any, Expression]) -> Any:
         symbol = sympy.Symbol(e.name, real=True)
         symbols[symbol] = e
         return symbol
-    arguments = [_to_sympy(a, symbols) for a in e.arguments]
+    arguments = [to_sympy(a, symbols) for a in e.arguments]
     match e.operator:
         case "add":
             return arguments[0] + arguments[1]
@@ -90,10 +91,12 @@ def _to_sympy(e: Expression, symbols: dict[Any, Expression]) -> Any:
             return arguments[0] ** arguments[1]
         case "ln":
             return sympy.log(arguments[0])
-    return getattr(sympy, e.operator)(arguments[0])
+        case "log10":
+            return sympy.log(arguments[0]) / sympy.log(10)
+    return getattr(sympy, e.operator)(*arguments)
 
 
-def _from_sympy(value: Any, symbols: dict[Any, Expression]) -> Expression | None:
+def from_sympy(value: Any, symbols: dict[Any, Expression]) -> Expression | None:
     """The expression of SymPy's answer; None where it uses what the calculator has not."""
     import sympy
 
@@ -104,12 +107,12 @@ def _from_sympy(value: Any, symbols: dict[Any, Expression]) -> Expression | None
     if value.is_Symbol:
         return symbols.get(value) or quantity(str(value), 1)
     if value.is_Pow and value.exp == sympy.Rational(1, 2):
-        inner = _from_sympy(value.base, symbols)
+        inner = from_sympy(value.base, symbols)
         return make("sqrt", inner) if inner is not None else None
     if isinstance(value, sympy.exp):
-        inner = _from_sympy(value.args[0], symbols)
+        inner = from_sympy(value.args[0], symbols)
         return make("exp", inner) if inner is not None else None
-    arguments = [_from_sympy(a, symbols) for a in value.args]
+    arguments = [from_sympy(a, symbols) for a in value.args]
     if not arguments or any(a is None for a in arguments):
         return None
     given = [a for a in arguments if a is not None]
