@@ -18,6 +18,7 @@ _COMMANDS = {
     "chart": "Chart speed against accuracy for every form of a model.",
     "check": "Verify everything that can be verified about a model or a profile.",
     "compile": "Compile a reflectance model to profiles.",
+    "data": "Summarise measured reflectance and what it covers.",
     "disasm": "Print the calculator text of a profile.",
     "eval": "Evaluate single pixels through profiles.",
     "export": "Write a model's formula for other tools, as FPCore.",
