@@ -22,6 +22,7 @@ _COMMANDS = {
     "disasm": "Print the calculator text of a profile.",
     "eval": "Evaluate single pixels through profiles.",
     "export": "Write a model's formula for other tools, as FPCore.",
+    "measure": "Take measurements from photographs of a cylinder.",
     "models": "List the model library, or show one model.",
     "plot": "Draw curves, lobes, strips of colours, lit bodies.",
     "scene-chart": "Compare the models of the library in one scene.",
