@@ -75,6 +75,10 @@ def measured(table: Table, said: Declared, name: str, remarks: Sequence[str] = (
         angle,
         where,
     )
+    if "reflection_azimuth" in places and said.mirror:
+        raise MeasurementError("a file with azimuths says itself where the mirror is", where=where)
+    if "incident_azimuth" in places and "reflection_azimuth" not in places:
+        raise MeasurementError("the light has an azimuth, and the viewer has none", where=where)
     azimuths = _azimuths(table, places, angle, mirror)
     return checked(
         # A negative zenith is the same direction as a positive one, half a turn away.
@@ -187,6 +191,10 @@ def _gathered(table: Table, places: Mapping[str | float, int]) -> Table:
     if len(distinct) > MOST_COLUMNS or len(keys) * len(distinct) > _MOST_NUMBERS:
         message = f"{len(distinct):,} wavelengths in {len(keys):,} rows are too many"
         raise MeasurementError(message, where=table.where)
+    spectral = [f"{w:.10g}nm" for w in distinct]
+    for name in spectral:
+        if not isinstance(role(name), float):
+            raise MeasurementError(f"'{name}' is no wavelength", where=table.where)
     # Repeated measurements of a direction stay rows of their own: the n-th of each wavelength.
     times: dict[tuple[bytes, int], int] = {}
     row_of: dict[tuple[bytes, int], int] = {}
@@ -199,5 +207,4 @@ def _gathered(table: Table, places: Mapping[str | float, int]) -> Table:
     numbers[rows, len(names) + column] = table.numbers[:, places["value"]]
     lines = np.zeros(len(row_of), int)
     lines[rows[::-1]] = table.lines[::-1]
-    titles = (*names, *(f"{w:.10g}nm" for w in distinct))
-    return replace(table, names=titles, numbers=numbers, lines=lines.tolist())
+    return replace(table, names=(*names, *spectral), numbers=numbers, lines=lines.tolist())

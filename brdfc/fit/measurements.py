@@ -10,7 +10,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfc.source.errors import MeasurementError
+from brdfc.source.errors import MeasurementError, ValueGivenError
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -23,6 +23,8 @@ _SAME = math.radians(0.01)
 """Directions closer than this are one: goniometers are not set more exactly."""
 _ROUNDED = 1e-9
 """Radians by which a right angle may be exceeded, by rounding."""
+_GREATEST = 1e12
+"""1/sr; no mirror that was measured comes near."""
 _WAVELENGTHS = (100.0, 20000.0)
 """Nanometres."""
 
@@ -137,7 +139,11 @@ def checked(
             raise MeasurementError(message, where=place, hint=hint)
 
     refuse(~np.isfinite(directions).all(axis=1), "an angle is missing, or no finite number")
-    refuse(np.isinf(values).any(axis=1), "an infinite value", "leave missing values empty, or nan")
+    refuse(
+        (np.abs(values) > _GREATEST).any(axis=1),
+        f"a value that is infinite, or above {_GREATEST:g} 1/sr",
+        "leave missing values empty, or nan",
+    )
     refuse(~(np.isfinite(weighted) & (weighted >= 0)), "a weight is no number from 0 upwards")
     refuse((directions[:, :2] < 0).any(axis=1), "a zenith is below 0")
     order = _rising(wavelengths, where)
@@ -169,7 +175,7 @@ def checked(
         kind=kind,
         wavelengths=tuple(float(wavelengths[i]) for i in order),
         weights=weighted[kept],
-        white=_white(white, kind),
+        white=_white(white, kind, where),
         name=name,
         remarks=tuple(noticed),
     )
@@ -187,10 +193,13 @@ def _rising(wavelengths: Sequence[float], where: str) -> list[int]:
     return sorted(range(len(wavelengths)), key=lambda i: wavelengths[i])
 
 
-def _white(white: Sequence[float] | None, kind: Kind) -> XYZ | None:
+def _white(white: Sequence[float] | None, kind: Kind, where: str) -> XYZ | None:
     from brdfc.colour.conditions import normalised_white
     from brdfc.colour.difference import D50
 
     if kind is not Kind.XYZ:
         return None
-    return D50 if white is None else normalised_white(white)
+    try:
+        return D50 if white is None else normalised_white(white)
+    except ValueGivenError as error:
+        raise MeasurementError(error.message, where=where, hint=error.hint) from None

@@ -62,8 +62,8 @@ def chosen(text: str, known: Mapping[str, object], what: str, where: str = "") -
 def to_brdf(values: Array, unit: str, incident: Array, reflection: Array) -> Array:
     """Values (n, k) in a unit of UNITS as BRDF in 1/sr; NaN where a cosine vanishes. incident and
     reflection: zeniths (n,), radians."""
-    per_brdf = UNITS[unit].brdfs(np.cos(incident), np.cos(reflection))
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):  # what is no number is refused with the rest of its row
+        per_brdf = UNITS[unit].brdfs(np.cos(incident), np.cos(reflection))
         converted = values / np.where(per_brdf > _GRAZING, per_brdf, np.nan)[:, None]
     return np.asarray(converted)
 

@@ -37,7 +37,7 @@ def test_what_cannot_be_is_refused(directions, values, more, said) -> None:
 
 
 def test_a_row_is_named_by_its_line() -> None:
-    with pytest.raises(MeasurementError, match="f, line 17: an infinite value"):
+    with pytest.raises(MeasurementError, match="f, line 17: a value that is infinite"):
         checked(ONE, np.array([[math.inf]]), Kind.SPECTRAL, where="f", lines=[17])
 
 

@@ -167,7 +167,7 @@ HEAD = "# unit: brdf\nincident,reflection,X,Y,Z\n"
         (f"{HEAD}45,0,1,1\n", "line 3: 4 values where 5 columns"),
         (f"{HEAD}45,0,1,1,1\n45,zero,1,1,1\n", "line 4: 'zero' where a number belongs"),
         (f"{HEAD}45,,1,1,1\n", "line 3: an angle is missing"),
-        (f"{HEAD}45,0,1,inf,1\n", "line 3: an infinite value"),
+        (f"{HEAD}45,0,1,inf,1\n", "line 3: a value that is infinite"),
         (f"{HEAD}45,0,,,\n", "no row has a value"),
         (HEAD, "no directions"),
         ("# units: brdf\nincident,reflection,value\n1,1,1\n", "did you mean 'unit'"),
@@ -179,6 +179,8 @@ HEAD = "# unit: brdf\nincident,reflection,X,Y,Z\n"
             "# unit: brdf\nincident,reflection," + ",".join(f"{i}nm" for i in range(100, 6000)),
             "columns; 4,200",
         ),
+        ("# unit: brdf\nincident,reflection,phi_i,value\n1,1,1,1\n", "the viewer has none"),
+        ("# unit: brdf\n# white: 1,0,1\nincident,reflection,X,Y,Z\n1,1,1,1,1\n", "luminance"),
         ("analytic\n::begin parameters\n", "Disney's BRDF Explorer"),
         ('# ours\nmodel gloss "A model"\n', "a model of brdfc"),
         ("# fits\ngold = Aggregate(Lambertian(albedo=[1,1,1]))", "published parameters"),
@@ -195,6 +197,8 @@ def test_bad_tables(text: str, said: str, tmp_path: Path) -> None:
     [
         ("cornell", "\n16\n", "\n15\n", "the last record has 5 of 19 numbers"),
         ("cornell", "\n16\n", "\n99999999\n", "no format|number of wavelengths"),
+        ("cornell", "\n16\n", f"\n000001{'0' * 5000}\n", "number of wavelengths|no format"),
+        ("cornell", "\n400 ", "\n4000000 ", "no format"),
         ("cornell", " 0.0 ", " x ", "'x' where a number belongs"),
         ("nist", "0.4,", "0.4,one,", "values where 7 columns|where a number belongs"),
         ("zenith-azimuth", "10.0", "ten", "where a number belongs"),
@@ -245,6 +249,10 @@ def test_what_a_format_states_cannot_be_said(tmp_path: Path) -> None:
 
 
 def test_rows_of_one_wavelength_are_gathered(tmp_path: Path) -> None:
+    for wrong in ("0.532", "", "inf"):
+        text = f"# unit: brdf\nincident,reflection,wavelength,value\n45,0,{wrong},1\n"
+        with pytest.raises(MeasurementError, match="is no wavelength"):
+            plain(text, tmp_path)
     text = "# unit: brdf\nincident,reflection,wavelength,value\n"
     text += "45,0,500,1\n45,0,400,2\n45,10,400,3\n45,0,400,4\n"
     m = plain(text, tmp_path)

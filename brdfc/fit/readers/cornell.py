@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from brdfc.fit.columns import measured
+from brdfc.fit.columns import measured, role
 from brdfc.fit.declared import Declared
 from brdfc.fit.measurements import Measurements
-from brdfc.fit.tables import MOST_COLUMNS, content_lines, number, read_text, table
+from brdfc.fit.tables import MOST_COLUMNS, content_lines, read_text, table
 from brdfc.source.errors import MeasurementError
 
 ANGLES = ("theta_i", "phi_i", "theta_s", "phi_s")
@@ -37,11 +37,15 @@ def read(path: Path, said: Declared) -> Measurements:
     where = str(path)
     words = _words(read_text(path))
     line, first = next(words, (0, ""))
-    if not first.isdecimal() or not 0 < int(first[:6]) <= MOST_COLUMNS - len(ANGLES):
+    count = int(first) if first.isdecimal() and len(first) <= 6 else 0
+    if not 0 < count <= MOST_COLUMNS - len(ANGLES):
         message = f"'{first[:40]}' where the number of wavelengths belongs"
         raise MeasurementError(message, where=f"{where}, line {line}")
-    wavelengths = [number(w, f"{where}, line {at}") for at, w in _record(words, int(first), where)]
-    names = (*ANGLES, *(f"{w:g}nm" for w in wavelengths))
+    spectral = [f"{word}nm" for _, word in _record(words, count, where)]
+    for name in spectral:
+        if not isinstance(role(name), float):
+            raise MeasurementError(f"'{name[:40]}' is no wavelength", where=where)
+    names = (*ANGLES, *spectral)
 
     def records() -> Iterator[tuple[int, list[str]]]:
         while record := _record(words, len(names), where):

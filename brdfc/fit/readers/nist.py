@@ -38,5 +38,6 @@ def read(path: Path, said: Declared) -> Measurements:
         raise MeasurementError("its first line has other names than NIST's", where=str(path))
     whole = table(names, rows, str(path))
     first = np.array(whole.numbers[:, : len(_NAMES)])
-    first[:, 0] *= 1000
+    with np.errstate(over="ignore"):  # an infinite wavelength is refused
+        first[:, 0] *= 1000
     return measured(replace(whole, names=_NAMES, numbers=first), said, path.stem)
