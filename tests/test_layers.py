@@ -24,6 +24,7 @@ ORDER = [
     "profiles",
     "cmm",
     "images",
+    "fit",
     "scenes",
     "charts",
     "pictures",
@@ -51,17 +52,22 @@ def imports(path: Path) -> set[tuple[str, str]]:
 
 
 def files() -> list[Path]:
-    return sorted(PACKAGE.glob("*/*.py"))
+    return sorted(PACKAGE.glob("*/**/*.py"))
+
+
+def stage_of(path: Path) -> str:
+    """The folder of the package that a file is in, at whatever depth."""
+    return path.relative_to(PACKAGE).parts[0]
 
 
 def test_every_folder_has_its_place() -> None:
-    folders = {path.parent.name for path in files()}
+    folders = {stage_of(path) for path in files()}
     assert folders <= set(ORDER)
 
 
-@pytest.mark.parametrize("path", files(), ids=lambda p: f"{p.parent.name}/{p.name}")
+@pytest.mark.parametrize("path", files(), ids=lambda p: str(p.relative_to(PACKAGE)))
 def test_a_stage_knows_only_those_before_it(path: Path) -> None:
-    stage = path.parent.name
+    stage = stage_of(path)
     for top, second in imports(path):
         if top != "brdfc" or second in ANYWHERE:
             continue
@@ -71,7 +77,7 @@ def test_a_stage_knows_only_those_before_it(path: Path) -> None:
             assert stage in TOP, f"{stage} imports brdfc.{second}"
 
 
-@pytest.mark.parametrize("path", files(), ids=lambda p: f"{p.parent.name}/{p.name}")
+@pytest.mark.parametrize("path", files(), ids=lambda p: str(p.relative_to(PACKAGE)))
 def test_only_the_symbolic_stage_knows_sympy(path: Path) -> None:
-    if path.parent.name != "symbolic":
+    if stage_of(path) != "symbolic":
         assert not {"sympy", "mpmath"} & {top for top, _ in imports(path)}

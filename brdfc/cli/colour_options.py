@@ -97,11 +97,11 @@ def stated_viewing(
         return None
     from brdfc.colour.conditions import viewing_conditions
 
-    numbers = None if white is None else _three(white, "--white")
+    numbers = None if white is None else three_numbers(white, "--white")
     return viewing_conditions(illuminant, observer, numbers, surround, luminance, adaptation)
 
 
-def _three(text: str, option: str) -> list[float]:
+def three_numbers(text: str, option: str) -> list[float]:
     try:
         numbers = [float(word) for word in text.split(",")]
     except ValueError:

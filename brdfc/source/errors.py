@@ -8,6 +8,7 @@
     +-- LinkError             profiles that do not connect
     +-- SpectrumError         a table of a spectrum or of colour matching functions
     +-- SceneError            a scene file, or what it asks of a model
+    +-- MeasurementError      a file of measured reflectance, or what it holds
     +-- ImageError            an image that cannot be read, applied or written
     +-- FitError              measurements that a model cannot be fitted to, or a fit that is none
     +-- SelfCheckError        a compiled program that does not agree with its model
@@ -67,6 +68,10 @@ class SpectrumError(BrdfcError):
 
 class SceneError(BrdfcError):
     """A scene that cannot be; where names its key."""
+
+
+class MeasurementError(BrdfcError):
+    """Measured reflectance that cannot be read or used; where names the file and the line."""
 
 
 class ImageError(BrdfcError):

@@ -1,0 +1,1 @@
+"""Measured reflectance: read, summarised, taken from photographs, fitted."""

@@ -1,0 +1,1 @@
+"""One file a format; brdfc/fit/formats.py lists them."""
