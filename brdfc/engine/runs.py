@@ -48,7 +48,7 @@ def run(
     pixels: (..., channels), taken as float32. environment: variables by signature, as for
     interpreter.run. total: how many pixels are to come in all, where these are a part. Returns
     (..., outputs), float32. Raises ProgramError where a program cannot be proven safe or channels
-    do not fit, MissingExtraError where the compiled engine is asked for and llvmlite is not installed.
+    do not fit, MissingExtraError where the compiled engine is asked for without llvmlite.
     """
     array = np.asarray(pixels, dtype=np.float32)
     result = np.empty((*array.shape[:-1], outputs_of(chain, channels)), np.float32)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfc.images.tiff import CoefficientImage
+from brdfc.images.window import Window
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -27,6 +28,11 @@ class Region:
     top: int
     right: int
     bottom: int
+
+    @property
+    def window(self) -> Window:
+        """The same, as images are read."""
+        return Window(self.top, self.left, self.bottom - self.top, self.right - self.left)
 
     @property
     def places(self) -> tuple[Array, Array]:
@@ -56,8 +62,7 @@ class Exposed:
         total: Array | float = 0.0
         time: Array | float = 0.0
         for image, exposure in zip(self.images, self.exposures, strict=True):
-            samples = image.samples[region.top : region.bottom, region.left : region.right]
-            values = np.asarray(samples, dtype=np.float64)
+            values = image.window(region.window).astype(np.float64)
             # One clipped channel makes the colour wrong: the pixel is clipped. NaN is, too.
             below = (values < self.clip * (image.greatest or 1.0)).all(axis=-1, keepdims=True)
             total = total + np.where(below, values - self.dark, 0.0)
