@@ -25,6 +25,7 @@ figures: .venv/installed
 	$(BIN)/python benchmarks/stability.py
 	$(BIN)/python benchmarks/scenes.py
 	$(BIN)/python benchmarks/engine.py
+	$(BIN)/python benchmarks/scaling.py -o docs/engine.svg
 	$(BIN)/python benchmarks/images.py
 
 golden: .venv/installed

@@ -30,6 +30,7 @@ from brdfc.compiled import Compiled
 from brdfc.compiler import compile_model
 from brdfc.engine import native, runs
 from brdfc.engine.choice import Engine, threads_at_hand
+from brdfc.engine.forms import straight_form
 from brdfc.lang.load import load
 
 ROUNDS = 7
@@ -205,7 +206,7 @@ def measure(given: Case, threads: int, folder: Path) -> None:
 def first_run(given: Case) -> None:
     """What it takes to make machine code, in a process that has made some already."""
     native._kept.clear()
-    form = runs._straight(given.link.chain, given.link.inputs, _arrays(given), Engine.AUTO)
+    form = straight_form(given.link.chain, given.link.inputs, _arrays(given))
     assert form is not None
     shape, _ = native.shape_of(form, 1, 1)
     took = min(seconds(lambda: native.Code(shape)) for _ in range(3))
