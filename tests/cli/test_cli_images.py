@@ -176,3 +176,15 @@ def test_an_interruption_leaves_nothing(number: int, large: Path, folder: Path) 
     assert child.communicate(timeout=30)[1].strip() == "interrupted"
     assert child.returncode == 130
     assert not [*folder.glob(".cut.tif*"), *folder.glob("cut.tif")]
+
+
+def test_every_engine_and_number_of_threads_writes_the_same(folder: Path) -> None:
+    written = set()
+    for more in (["auto"], ["blocks", "--threads", "1"], ["compiled"], ["interpreter"]):
+        done = run("apply", *PROFILES, "f.tif", "-o", "e.tif", "--engine", *more, cwd=folder)
+        assert done.returncode == 0, done.stderr
+        written.add((folder / "e.tif").read_bytes())
+    assert len(written) == 1
+    done = run("apply", *PROFILES, "f.tif", "-o", "e.tif", "--engine", "gpu", cwd=folder)
+    assert done.returncode == 2
+    assert "'gpu' is not one of" in done.stderr
