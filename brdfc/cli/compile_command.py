@@ -35,6 +35,11 @@ if TYPE_CHECKING:
     metavar="NAME",
     help="Take a quantity from each pixel: angles of a curved surface, say. Repeatable.",
 )
+@click.option(
+    "--coefficients",
+    metavar="FIT.toml",
+    help="Take the defaults of channels from a fit: the values where an image has none.",
+)
 @click.option("--asm", metavar="FILE", help="Write the calculator text too.")
 @click.option(
     "--encode",
@@ -94,6 +99,7 @@ def command(
     mid: str | None,
     fixed: tuple[str, ...],
     channels: tuple[str, ...],
+    coefficients: str | None,
     asm: str | None,
     encode: str,
     angles: str | None,
@@ -122,6 +128,7 @@ def command(
       brdfc compile ward -o baked_mvis.icc --set incident=40deg --set reflection=10deg
       brdfc compile ward -o curved_mvis.icc --channel incident --channel reflection
       brdfc compile ward -o exact_mvis.icc --optimize accuracy --explain
+      brdfc compile ward -o garnet_mvis.icc --coefficients garnet.toml
       brdfc compile ward -o lamp_mvis.icc --white 0.97,1,0.484
       brdfc compile ward -o angles.icc --encode ncolour
       brdfc compile ward -o scene_mvis.icc --scene scene.toml
@@ -138,8 +145,13 @@ def command(
     if geometry is None and "brdf-function" in encode:
         geometry = "full"  # which is what it takes
     conditions = stated_viewing(**viewing)
+    loaded = load(model, geometry, spectral)
+    if coefficients is not None:
+        from brdfc.fit.result import read_coefficients, with_defaults
+
+        loaded = with_defaults(loaded, read_coefficients(coefficients))
     compiled = compile_model(
-        load(model, geometry, spectral),
+        loaded,
         pairs(fixed, "--set"),
         channels,
         optimize=optimize,
@@ -157,7 +169,7 @@ def command(
     end_progress()
     files = compiled.files(output, mid)
     files += [(Path(asm), compiled.text.encode())] if asm else []
-    refuse_same([path for path, _ in files], [model])
+    refuse_same([path for path, _ in files], [model, coefficients])
     write_all(*files)
     verdict, program = compiled.verdict, compiled.program
     click.echo(f"channels     {_short(' '.join(compiled.roles.channel_names), 200)}")

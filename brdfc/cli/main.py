@@ -22,10 +22,12 @@ _COMMANDS = {
     "disasm": "Print the calculator text of a profile.",
     "eval": "Evaluate single pixels through profiles.",
     "export": "Write a model's formula for other tools, as FPCore.",
+    "fit": "Fit a model's coefficients to measurements.",
     "measure": "Take measurements from photographs of a cylinder.",
     "models": "List the model library, or show one model.",
     "plot": "Draw curves, lobes, strips of colours, lit bodies.",
     "scene-chart": "Compare the models of the library in one scene.",
+    "select": "Choose the smallest model that measurements support.",
     "stability": "Show where a model fails in float32, and by how much.",
 }
 

@@ -50,7 +50,9 @@ def fit(
     scaling = Scaling(response)
     place = scaling.places(found.coefficients)
     spread = spread_of(losses_of(response, measured, objective, factors), place)
-    low, high = scaling.values(spread.low), scaling.values(spread.high)
+    # Two objectives that should agree: by how much they do not is a bias of one of them.
+    apart = np.abs(place - scaling.places(found.before))
+    low, high = scaling.values(spread.low - apart), scaling.values(spread.high + apart)
     remarks = [*measured.remarks, *checks.before(measured), *checks.after(response, spread)]
     if not found.converged:
         remarks.insert(0, "the search did not converge: do not use these coefficients")

@@ -40,11 +40,12 @@ class Method(Enum):
 
 @dataclass(frozen=True)
 class Found:
-    """coefficients: (p,). loss: of the objective: the mean CIEDE2000, or the root of the mean
-    square. converged: whether the method says that it has ended where it wanted to. agreed: of so
-    many starts, how many came to this."""
+    """coefficients: (p,); before: the same before they were polished. loss: of the objective: the
+    mean CIEDE2000, or the root of the mean square. converged: whether the method says that it has
+    ended where it wanted to. agreed: of so many starts, how many came to this."""
 
     coefficients: Array
+    before: Array
     loss: float
     converged: bool
     starts: int
@@ -175,11 +176,12 @@ def _least_squares(
     if colours is None:
         count = max(1, int(differences.valid.sum()))
         root = float(np.sqrt(2 * best.cost / count))
-        return Found(values, root, bool(best.success), len(places), agreed)
+        return Found(values, values, root, bool(best.success), len(places), agreed)
     loss = _of_colours(response, colours, scaling)
     polished = _simplex(loss, best.x)
     return Found(
         scaling.values(polished.x),
+        values,
         float(polished.fun),
         bool(best.success and polished.success),
         len(places),
@@ -253,4 +255,5 @@ def _simplex_alone(
     ends = sorted((_simplex(loss, x, 0.1) for x in places), key=lambda end: float(end.fun))
     best = ends[0]
     agreed = sum(end.fun <= best.fun * (1 + AGREED) for end in ends)
-    return Found(scaling.values(best.x), float(best.fun), bool(best.success), starts, agreed)
+    values = scaling.values(best.x)
+    return Found(values, values, float(best.fun), bool(best.success), starts, agreed)

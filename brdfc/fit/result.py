@@ -18,6 +18,9 @@ Array = NDArray[np.float64]
 
 FORMAT = 1
 """Of the file; a later one may say more."""
+MOST_BYTES = 1 << 20
+ROUNDED = 1e-6
+"""By which a coefficient may exceed its range, rounded as it is written."""
 
 
 @dataclass(frozen=True)
@@ -102,28 +105,40 @@ def _list(values: Sequence[float]) -> str:
     return f"[{', '.join(map(_number, values))}]"
 
 
-def read_coefficients(path: str | Path) -> tuple[str, dict[str, float]]:
-    """The name of the model and the coefficients of a file that a fit wrote, fixed ones included.
+@dataclass(frozen=True)
+class Coefficients:
+    """values: by the names of channels. white: that colours among them are relative to. where: the
+    file they are from."""
+
+    model: str
+    values: Mapping[str, float]
+    white: tuple[float, ...]
+    where: str
+
+
+def read_coefficients(path: str | Path) -> Coefficients:
+    """What a file says that a fit wrote, fixed quantities included.
 
     Raises FitError for another file, and for a fit that did not converge.
     """
     from brdfc.files import read_file
 
     try:
-        read = tomllib.loads(read_file(path, 1 << 20).decode())
-        name, found = str(read["model"]), dict(read["coefficients"])
-        values = {str(k): float(v) for k, v in found.items()}
+        read = tomllib.loads(read_file(path, MOST_BYTES).decode())
+        values = {str(k): float(v) for k, v in dict(read["coefficients"]).items()}
         for quantity, numbers in dict(read.get("fixed", {})).items():
             values |= _components(str(quantity), [float(v) for v in numbers])
+        white = tuple(float(v) for v in read["white"])
+        name, converged = str(read["model"]), read.get("converged")
     except (KeyError, TypeError, ValueError) as error:
         raise FitError(
             f"no coefficients: {error}", where=str(path), hint="write them with brdfc fit -o"
         ) from None
-    if not all(map(np.isfinite, values.values())):
-        raise FitError("a coefficient is no finite number", where=str(path))
-    if read.get("converged") is not True:
+    if not all(map(np.isfinite, values.values())) or len(white) != 3 or not min(white) > 0:
+        raise FitError("a coefficient, or the white, is no finite number", where=str(path))
+    if converged is not True:
         raise FitError("the fit did not converge", where=str(path), hint="fit it anew")
-    return name, values
+    return Coefficients(name, values, white, str(path))
 
 
 def _components(quantity: str, numbers: Sequence[float]) -> dict[str, float]:
@@ -131,24 +146,33 @@ def _components(quantity: str, numbers: Sequence[float]) -> dict[str, float]:
     return {quantity + s: v for s, v in zip(suffixes, numbers, strict=True)}
 
 
-def with_defaults(model: Model, coefficients: Mapping[str, float], where: str) -> Model:
+def with_defaults(model: Model, found: Coefficients) -> Model:
     """A model whose channels have these values where a profile finds none in an image.
 
     Raises FitError for coefficients that the model does not have, or that lie outside its ranges.
     """
-    left = dict(coefficients)
+    left = dict(found.values)
     quantities = []
     for q in model.quantities:
         if all(name in left for name in q.component_names):
             values = tuple(left.pop(name) for name in q.component_names)
-            if not all(q.low <= v <= max(q.high, 1.0) for v in values):
-                raise FitError(f"'{q.name}' lies outside the range of the model", where=where)
-            q = replace(q, default=values)
+            if q.type.is_colour:  # a model speaks of shares of the white
+                values = tuple(v / w for v, w in zip(values, found.white, strict=True))
+            for name, value in zip(q.component_names, values, strict=True):
+                if not q.low - ROUNDED <= value <= q.high + ROUNDED:
+                    raise FitError(
+                        f"{name} = {value:g} lies outside {q.low:g}..{q.high:g}, which "
+                        f"'{model.name}' declares",
+                        where=found.where,
+                        hint="fit within it, or compile a model that declares more",
+                    )
+            inside = tuple(min(max(v, q.low), q.high) for v in values)
+            q = replace(q, default=inside)
         quantities.append(q)
     if left:
         raise FitError(
             f"'{model.name}' has no {', '.join(left)}",
-            where=where,
-            hint="take the model that the coefficients were fitted with",
+            where=found.where,
+            hint=f"they were fitted with '{found.model}'",
         )
     return replace(model, quantities=tuple(quantities))

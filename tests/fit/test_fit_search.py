@@ -234,15 +234,17 @@ def test_a_file_is_read_back(tmp_path: Path) -> None:
     found = fit(load("ward", "full"), made("ward", TRUTH["ward"], directions(60)), starts=3)
     path = tmp_path / "fit.toml"
     path.write_text(found.to_toml())
-    name, values = read_coefficients(path)
-    assert name == "ward"
-    assert values == pytest.approx(found.values)
-    model = with_defaults(load("ward"), values, "fit.toml")
-    quantity = model.quantity("Rd")
+    read = read_coefficients(path)
+    assert read.model == "ward"
+    assert read.values == pytest.approx(found.values)
+    quantity = with_defaults(load("ward"), read).quantity("Rd")
     assert quantity is not None
-    assert quantity.default == pytest.approx(TRUTH["ward"][:3], rel=1e-3)
+    shares = [v / w for v, w in zip(TRUTH["ward"], read.white, strict=False)]
+    assert quantity.default == pytest.approx(shares, rel=1e-3)
     with pytest.raises(FitError, match="'lambert' has no ks, m"):
-        with_defaults(load("lambert"), values, "fit.toml")
+        with_defaults(load("lambert"), read)
+    with pytest.raises(FitError, match=r"ks = 1.5 lies outside 0\.\.1, which 'ward' declares"):
+        with_defaults(load("ward"), replace(read, values={**read.values, "ks": 1.5}))
     path.write_text("model = 3")
     with pytest.raises(FitError, match="no coefficients"):
         read_coefficients(path)
