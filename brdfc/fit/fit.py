@@ -50,9 +50,11 @@ def fit(
     scaling = Scaling(response)
     place = scaling.places(found.coefficients)
     spread = spread_of(losses_of(response, measured, objective, factors), place)
-    # Two objectives that should agree: by how much they do not is a bias of one of them.
-    apart = np.abs(place - scaling.places(found.before))
-    low, high = scaling.values(spread.low - apart), scaling.values(spread.high + apart)
+    # Two objectives that should agree: by how much they do not is a bias of one of them, and adds
+    # to the chance of the measurements as one independent error to another.
+    apart = place - scaling.places(found.before)
+    low = scaling.values(place - np.hypot(place - spread.low, apart))
+    high = scaling.values(place + np.hypot(spread.high - place, apart))
     remarks = [*measured.remarks, *checks.before(measured), *checks.after(response, spread)]
     if not found.converged:
         remarks.insert(0, "the search did not converge: do not use these coefficients")
