@@ -39,10 +39,17 @@ class Diagnostic:
         return "\n".join(parts)
 
 
+_DRAWN = 160
+"""Characters that are shown of a line; of a longer one, those around the span."""
+
+
 def _drawn(span: Span, label: str) -> list[str]:
     """The line with a caret under the span, at most to the end of the first line."""
     line = span.line_text
     before = line[: span.column - 1]
+    if len(line) > _DRAWN:
+        first = max(0, len(before) - _DRAWN // 2)
+        line, before = line[first : first + _DRAWN], before[first:]
     width = max(1, min(span.end - span.start, len(line) - len(before)))
     # Tabs are kept in front of the carets, so that they stand under the text at any tab width.
     indent = "".join("\t" if character == "\t" else " " for character in before)
