@@ -40,7 +40,7 @@ def _parser() -> Lark:
     from lark import Lark
 
     grammar = (data_dir("grammars") / "calc.lark").read_text(encoding="utf-8")
-    return Lark(grammar, parser="lalr", propagate_positions=True)
+    return Lark(grammar, parser="lalr")
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from brdfc.calc.samples import Storage
+from brdfc.icc.layout import MAX_ENTRIES
 from brdfc.icc.numbers import NumberArray
 from brdfc.xml.document import Node
 from brdfc.xml.folder import Folder
@@ -31,12 +32,14 @@ def read_array(node: Node, folder: Folder) -> NumberArray:
     if child is None:
         node.fail(f"<{node.tag}> needs <{'Array' if whole else 'Data'}>")
     if whole:
-        words = child.text.split() if "Filename" not in child.attributes else [""]
+        words = child.text.split(None, MAX_ENTRIES) if "Filename" not in child.attributes else [""]
         if not all(word.isdecimal() and len(word) <= 20 for word in words):
             child.fail("this holds whole numbers, and names no file")
         return NumberArray(kind, tuple(map(int, words)))
     storage = _STORAGE.get(kind, Storage.FLOAT32)
     values = folder.samples(child, storage=storage)
+    if len(values) > MAX_ENTRIES:
+        child.fail(f"{len(values):,} numbers are more than {MAX_ENTRIES:,}")
     if kind != "fl64":
         with np.errstate(over="ignore"):
             values = values.astype(storage.dtype).astype(np.float64)

@@ -18,11 +18,12 @@ from brdfc.source.diagnostics import Diagnostic
 from brdfc.source.errors import ProfileError
 from brdfc.source.span import Source, Span
 
-SIZE_LIMIT = 16 << 20
+SIZE_LIMIT = 8 << 20
 """Bytes of a document, read or written."""
 _MAX_DEPTH = 200
 """Calculators may stand 64 deep in calculators, two elements each."""
 _MAX_NODES = 200_000
+_MAX_ATTRIBUTES = 100
 
 
 @dataclass(slots=True, eq=False)
@@ -74,11 +75,15 @@ class Node:
         begin = _tag_end(text, self.start)
         if text[begin - 2] == "/":
             return begin, ""
-        end = text.find("</" + self.tag, begin)
-        return begin, _MARKUP.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), text[begin:end])
+        inside = text[begin : text.find("</" + self.tag, begin)]
+        if "<" not in inside or len(inside) > _LONG:
+            return begin, inside
+        return begin, _MARKUP.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), inside)
 
 
-_START_TAG = re.compile(r"""<(?:[^"'>]|"[^"]*"|'[^']*')*>""")
+_LONG = 1 << 20
+"""Longer texts with comments are not searched for them, which takes long."""
+_START_TAG = re.compile(r"""<(?:[^"'>]++|"[^"]*+"|'[^']*+')*+>""")
 _MARKUP = re.compile(r"<!--.*?-->|<!\[CDATA\[|\]\]>|<\?.*?\?>", re.DOTALL)
 
 
@@ -138,6 +143,8 @@ class _Reader:
         self.nodes += 1
         place = self.place(self.parser.CurrentByteIndex)
         node = Node(tag, attributes, source=self.source, start=place)
+        if len(attributes) > _MAX_ATTRIBUTES:
+            node.fail(f"more than {_MAX_ATTRIBUTES} attributes")
         if len(self.open) > _MAX_DEPTH:
             node.fail(f"elements nest deeper than {_MAX_DEPTH}")
         if self.nodes > _MAX_NODES:

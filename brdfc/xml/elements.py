@@ -15,6 +15,7 @@ from brdfc.calc.program import Element, Matrix, OpaqueElement, Program
 from brdfc.calc.samples import Samples, Storage
 from brdfc.calc.tables import LookupTable
 from brdfc.icc.numbers import NUMBER_FORMATS, NumberArray
+from brdfc.icc.signatures import signature_bytes
 from brdfc.source.errors import ProfileError, ProgramError
 from brdfc.xml.appearance import APPEARANCE, appearance_node, read_appearance
 from brdfc.xml.arrays import array_node, read_array
@@ -22,7 +23,7 @@ from brdfc.xml.calculator import read_calculator
 from brdfc.xml.curves import curve_nodes, read_curves
 from brdfc.xml.document import Node
 from brdfc.xml.folder import Folder
-from brdfc.xml.names import TYPE_NAMES, TYPE_SIGNATURES
+from brdfc.xml.names import TYPE_NAMES, TYPE_SIGNATURES, signature_name, signature_of_name
 from brdfc.xml.naming import NO_NAMES, Names, declared, naming, variables
 from brdfc.xml.values import channels, hexadecimal, integer, numbers, to_float32
 from brdfc.xml.writing import hexadecimal as hexadecimal_lines
@@ -55,7 +56,7 @@ class ElementWriter:
             return _table_node(element)
         if isinstance(element, CurveSet):
             try:
-                nodes = curve_nodes(element, lambda d: self.node(decode_element(d, "curve")))
+                nodes = curve_nodes(element, self._curve_calculator)
             except (ProgramError, struct.error):  # a curve that is carried, and not well-formed
                 return _unknown_node(element)
             return Node("CurveSetElement", _attributes(element), nodes)
@@ -65,6 +66,12 @@ class ElementWriter:
         if element.signature == "tint":
             return _tint_node(element)
         return _unknown_node(element)
+
+    def _curve_calculator(self, data: bytes) -> Node:
+        element = decode_element(data, "curve")
+        if not isinstance(element, Program):
+            raise ProgramError("a curve is sampled from a calculator only")
+        return self.node(element)
 
     def _calculator(self, program: Program, names: Names) -> Node:
         temporaries = variables(program.body)
@@ -104,7 +111,8 @@ def _table_node(table: LookupTable) -> Node:
 
 def _unknown_node(element: Element) -> Node:
     # The reference writes the attribute as Type and reads it as type.
-    attributes = {"Type": element.signature, "type": element.signature, **_attributes(element)}
+    kind = signature_name(signature_bytes(element.signature))
+    attributes = {"Type": kind, "type": kind, **_attributes(element)}
     lines = hexadecimal_lines(encode_element(element)[HEADER:])
     return Node("UnknownElement", attributes, lines=lines)
 
@@ -154,13 +162,20 @@ def _read(node: Node, folder: Folder, depth: int) -> Element:
     return readers[node.tag]()
 
 
+_MOST_ZEROS = 1 << 16
+_LARGEST_INVERSE = 256
+
+
 def _read_matrix(node: Node) -> Matrix:
     inputs, outputs = channels(node)
     data, constant = node.child("MatrixData"), node.child("ConstantData")
+    if data is None and inputs * outputs > _MOST_ZEROS:
+        node.fail(f"a matrix of zeros has at most {_MOST_ZEROS:,} of them")
     values = np.zeros(inputs * outputs) if data is None else numbers(data, inputs * outputs)
     if data is not None and data.attributes.get("InvertMatrix", "").lower() == "true":
-        if inputs != outputs:
-            data.fail("only a square matrix has an inverse")
+        if inputs != outputs or inputs > _LARGEST_INVERSE:
+            most = f"{_LARGEST_INVERSE} x {_LARGEST_INVERSE}"
+            data.fail(f"only a square matrix is inverted, of {most} at most")
         try:
             inverse = np.linalg.inv(values.reshape(outputs, inputs))
         except np.linalg.LinAlgError:
@@ -208,11 +223,13 @@ def _read_tint(node: Node, folder: Folder) -> OpaqueElement:
 
 def _read_unknown(node: Node) -> Element:
     inputs, outputs = channels(node)
-    kind = node.attributes.get("Type") or node.attributes.get("type") or ""
-    if len(kind) != 4 or not kind.isascii():
-        node.fail(f"Type is the four characters of an element's kind, not '{kind}'")
-    head = struct.pack(">4sIHH", kind.encode(), 0, inputs, outputs)
+    name = node.attributes.get("Type") or node.attributes.get("type") or ""
     try:
-        return decode_element(head + hexadecimal(node), f"'{kind}'")
+        kind = signature_of_name(name)
+    except ProfileError as error:
+        node.fail(error.message)
+    head = struct.pack(">4sIHH", kind, 0, inputs, outputs)
+    try:
+        return decode_element(head + hexadecimal(node), f"'{name}'")
     except ProgramError as error:
         node.fail(str(error))

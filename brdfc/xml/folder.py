@@ -92,6 +92,7 @@ class Folder:
 
 
 def _binary(data: bytes, storage: Storage, little: bool) -> NDArray[np.float64] | None:
+    """The numbers of a binary file; None where it ends within one."""
     dtype = storage.dtype.newbyteorder("<" if little else ">")
     if len(data) % dtype.itemsize:
         return None

@@ -97,6 +97,7 @@ SCHEMA: dict[str, Kind] = {
     "UnknownData": Kind(),
     # header
     "IccProfile": Kind("", "Header Tags"),
+    "Tags": Kind("", None),
     "Header": Kind(
         "",
         "PreferredCMMType ProfileVersion ProfileSubClassVersion ProfileDeviceClass "

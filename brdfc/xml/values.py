@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import warnings
+from typing import NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +57,7 @@ def numbers(node: Node, count: int | None = None) -> NDArray[np.float64]:
     """The numbers that are the text of a node, finite, as many as there must be."""
     values = parse_numbers(node.text)
     if values is None or not np.isfinite(values).all():
-        raise ProfileError(_first_wrong(node))
+        _refuse(node)
     if count is not None and len(values) != count:
         node.fail(f"{len(values)} numbers, where {count} are needed")
     return values
@@ -67,25 +68,31 @@ def parse_numbers(text: str) -> NDArray[np.float64] | None:
     if not text or text.isspace():
         return np.empty(0)
     with warnings.catch_warnings():
-        warnings.simplefilter("error", DeprecationWarning)
+        warnings.simplefilter("error", DeprecationWarning)  # which older NumPy says it with
         try:
             return np.fromstring(text, dtype=np.float64, sep=" ")
         except (DeprecationWarning, ValueError):
             return None
 
 
-def _first_wrong(node: Node) -> str:
+_NUMBERS = re.compile(
+    r"\s*+(?:[+-]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[eE](?:-[0-9]++|\+?[0-9]{1,2}+))?"
+    r"(?:\s++|$))*+",
+    re.ASCII,
+)
+"""As many numbers as stand one after the other, none near the end of what floats can hold."""
+
+
+def _refuse(node: Node) -> NoReturn:
+    """Show the first word that is no number, or no finite one."""
     begin, text = node.content()
-    for word in re.finditer(r"\S+", text):
-        try:
-            if math.isfinite(float(word.group())):
-                continue
-        except ValueError:
-            pass
-        assert node.source is not None
-        span = node.source.span(begin + word.start(), begin + word.end())
-        return str(Diagnostic(span, f"'{word.group()[:40]}' is not a finite number"))
-    return str(Diagnostic(node.span, "not all of this is finite numbers"))
+    found = _NUMBERS.match(text)
+    first = begin + (found.end() if found else 0)
+    word = re.compile(r"\S*").match(text, first - begin)
+    assert node.source is not None
+    assert word is not None
+    span = node.source.span(first, first + len(word.group()))
+    raise ProfileError(str(Diagnostic(span, f"'{word.group()[:40]}' is not a finite number")))
 
 
 def to_float32(values: NDArray[np.float64] | list[float]) -> tuple[float, ...]:

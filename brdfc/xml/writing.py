@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterator, Sequence
 from xml.sax.saxutils import escape
 
@@ -55,7 +56,13 @@ _IN_ATTRIBUTE = {'"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
 
 
 def number(value: float, digits: int = 9) -> str:
-    """A number with the digits that a float32 needs."""
+    """A number with at most so many digits; of nine, which a float32 needs at most, no more than
+    give back the same float32."""
+    if digits == 9:
+        for fewer in (6, 7, 8):
+            text = f"{value:.{fewer}g}"
+            if struct.pack("f", float(text)) == struct.pack("f", value):
+                return text
     return f"{value:.{digits}g}"
 
 
