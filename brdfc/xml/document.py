@@ -22,8 +22,9 @@ SIZE_LIMIT = 8 << 20
 """Bytes of a document, read or written."""
 _MAX_DEPTH = 200
 """Calculators may stand 64 deep in calculators, two elements each."""
-_MAX_NODES = 200_000
+_MAX_NODES = 150_000
 _MAX_ATTRIBUTES = 100
+_MAX_NAME = 200
 
 
 @dataclass(slots=True, eq=False)
@@ -111,7 +112,7 @@ class _Reader:
     """Builds the tree; character by character it follows where in the text expat's bytes are."""
 
     def __init__(self, data: bytes, source: Source) -> None:
-        self.data, self.source = data, source
+        self.data, self.source, self.ascii = data, source, data.isascii()
         self.byte = self.character = self.nodes = 0
         self.open: list[Node] = [Node("")]
         self.texts: list[list[str]] = [[]]
@@ -134,6 +135,8 @@ class _Reader:
 
     def place(self, byte: int) -> int:
         """The character that begins at a byte, none before the last one asked for."""
+        if self.ascii:
+            return byte
         byte = max(byte, self.byte)
         self.character += len(self.data[self.byte : byte].decode("utf-8", "ignore"))
         self.byte = byte
@@ -143,6 +146,9 @@ class _Reader:
         self.nodes += 1
         place = self.place(self.parser.CurrentByteIndex)
         node = Node(tag, attributes, source=self.source, start=place)
+        longest = max(map(len, (tag, *attributes)))
+        if longest > _MAX_NAME:
+            node.fail(f"a name of {longest:,} characters")
         if len(attributes) > _MAX_ATTRIBUTES:
             node.fail(f"more than {_MAX_ATTRIBUTES} attributes")
         if len(self.open) > _MAX_DEPTH:

@@ -137,10 +137,10 @@ def read_element(node: Node, folder: Folder, depth: int = 0) -> Element:
     if node.tag == "CalculatorElement":
         return read_calculator(node, folder, lambda n, d: read_element(n, folder, d), depth)
     element = _read(node, folder, depth)
-    try:
-        encode_element(element)
+    try:  # what could not be read again is not written
+        decode_element(encode_element(element), node.tag)
     except ProgramError as error:
-        node.fail(error.message if error.where is None else f"{error.where}: {error.message}")
+        node.fail(error.message)
     return element
 
 

@@ -130,7 +130,7 @@ def test_message(text, expected):
         ("{ 1 if { } else { } else { } }", "'else' cannot stand here"),
         ("{ if(3) { } }", "'if(3)' cannot stand here"),
         ("{ in[0,3) }", "'in[0,3)' cannot stand here"),
-        ("{ in[0, 3] }", "'in[0,' cannot stand here"),
+        ("{ in[0 3] }", "'in' takes [start,count]"),
         ("{ ~ }", "'~' cannot stand here"),
         ("{ \0 }", "cannot stand here"),
         ("{ in[] }", "'in' takes [start,count]"),
