@@ -9,7 +9,7 @@ from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import TAGS, signature_bytes
 from brdfc.icc.types import Pipeline, Tag, Utf8Array
 from brdfc.profiles.metadata import describe
-from brdfc.source.errors import ProfileError
+from brdfc.source.errors import ProfileError, ProgramError
 from brdfc.xml.document import SIZE_LIMIT, Node, read_document
 from brdfc.xml.elements import ElementWriter
 from brdfc.xml.folder import Folder
@@ -41,10 +41,17 @@ def to_xml(profile: Profile) -> str:
                 node.attributes["SameAsSignature"] = other.attributes["TagSignature"]
         else:
             tags += _comments(profile, tag)
-            node.children.append(tag_node(tag, elements, _channel_names(profile, signature)))
+            node.children.append(_type_node(profile, signature, tag, elements))
         tags.append(node)
     header = header_node(profile.header)
     return document_text(Node("IccProfile", {}, [header, Node("Tags", {}, tags)]))
+
+
+def _type_node(profile: Profile, signature: str, tag: Tag, elements: ElementWriter) -> Node:
+    try:
+        return tag_node(tag, elements, _channel_names(profile, signature))
+    except (ProfileError, ProgramError) as error:
+        raise ProfileError(error.message, where=f"tag '{signature}'", hint=error.hint) from error
 
 
 def _named(signature: str) -> Node:

@@ -28,10 +28,10 @@ MEGABYTES = 200
 
 
 def refused(data: bytes) -> str:
-    started = time.perf_counter()
+    started = time.process_time()
     with pytest.raises(BrdfcError) as caught:
         read(data)
-    assert time.perf_counter() - started < SECONDS
+    assert time.process_time() - started < SECONDS
     message = str(caught.value)
     assert len(message) < 2000
     return message
@@ -285,11 +285,11 @@ def test_elements_that_stand_for_more_than_there_is_room_for(tmp_path: Path) -> 
     path = tmp_path / "x.icc"
     shared(50).save(path)
     assert path.stat().st_size < 10_000
-    started = time.perf_counter()
+    started = time.process_time()
     with pytest.raises(BrdfcError, match="as XML this profile is over"):
         to_xml(Profile.load(path))
     found = inspect(path, engine=False)
-    assert time.perf_counter() - started < 2 * SECONDS
+    assert time.process_time() - started < 2 * SECONDS
     (calculator_found,) = (p.calculator for p in found.transforms[0].elements)
     assert calculator_found is not None
     assert "a pixel may take more than" in str(calculator_found.refused)
@@ -298,9 +298,9 @@ def test_elements_that_stand_for_more_than_there_is_room_for(tmp_path: Path) -> 
 def test_a_price_is_added_up_once_a_calculator(tmp_path: Path) -> None:
     path = tmp_path / "x.icc"
     shared(18).save(path)
-    started = time.perf_counter()
+    started = time.process_time()
     found = inspect(path, engine=False)
-    assert time.perf_counter() - started < SECONDS
+    assert time.process_time() - started < SECONDS
     calculator_found = found.transforms[0].elements[0].calculator
     assert calculator_found is not None
     assert calculator_found.nanoseconds is not None

@@ -42,6 +42,7 @@ from brdfc.icc.types import (
     Utf8Text,
     XYZArray,
 )
+from brdfc.source.errors import ProfileError
 from brdfc.xml.profile import encoded, from_xml, to_xml
 
 FLOATS = st.floats(width=32, allow_nan=False, allow_infinity=False)
@@ -296,3 +297,9 @@ def test_what_the_multiplex_channels_are_called_names_the_calculator() -> None:
     assert 'InputNames="Rd[3] Process_Cyan _1st" OutputNames="XYZ[3]"' in text
     assert "in{Rd} in{Process_Cyan} in{_1st} mul smul[3] in{Rd[1]} pop out{XYZ}" in text
     same(profile)
+
+
+def test_a_tag_that_cannot_be_written_is_named() -> None:
+    with pytest.raises(ProfileError) as caught:
+        to_xml(holding(Dictionary((("a\0b", "c"),))))
+    assert str(caught.value) == "tag 'tag0': a text with a NUL inside: 'a\\x00b'"
