@@ -128,3 +128,36 @@ def test_inspect_of_what_is_no_profile(tmp_path: Path) -> None:
     done = run("inspect", "x.icc", cwd=tmp_path)
     assert done.returncode == 1
     assert done.stderr == "error: x.icc: not an ICC profile: it looks like text\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (b"cos \0\0\0\0", b"soc \0\0\0\0", "main function, op 6: no operator has the signature"),
+        (b"fl32\0\0\0\0", b"fl32\0\0\0\0\x7f\xc0\0\0", "tag 'mdv ' at byte "),
+        (b"utf8\0\0\0\0Rdx", b"utf8\0\0\0\0R\xffx", "name 0 at byte "),
+        (
+            b"mpet\0\0\0\0\0\3\0\3\0\0\0\1",
+            b"mpet\0\0\0\0\0\3\0\3\xff\xff\xff\xff",
+            "tag 'M2B0' at byte",
+        ),
+        (
+            b"calc\0\0\0\0\0\3\0\3\0\0\0\0",
+            b"calc\0\0\0\0\0\3\0\3\0\1\0\0",
+            "65536 sub-elements are",
+        ),
+    ],
+    ids=["operator", "NaN", "UTF-8", "elements", "sub-elements"],
+)
+def test_profiles_that_are_not_well_formed(
+    old: bytes, new: bytes, message: str, folder: Path
+) -> None:
+    data = (folder / "gloss_mvis.icc").read_bytes()
+    at = data.index(old)
+    (folder / "bad.icc").write_bytes(data[:at] + new + data[at + len(new) :])
+    for command in ("inspect", "xml"):
+        done = run(command, "bad.icc", cwd=folder)
+        assert (done.returncode, done.stdout) == (1, "")
+        assert done.stderr.startswith("error: bad.icc, tag '")
+        assert message in done.stderr
+        assert done.stderr.count("\n") == 1
