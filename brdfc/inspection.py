@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from brdfc.calc.binary import encode_element
@@ -23,8 +22,9 @@ from brdfc.icc.signatures import (
     space_text,
 )
 from brdfc.icc.texts import Dictionary, LocalizedText, Utf8Array
-from brdfc.icc.types import NumberArray, Pipeline
+from brdfc.icc.types import NumberArray, Pipeline, Structure, Tag
 from brdfc.icc.validate import validate
+from brdfc.inspected import Calculator, Channel, Inspection, Part, Transform, Variable
 from brdfc.profiles.metadata import describe, value_text
 from brdfc.source.errors import BrdfcError, ProgramError
 from brdfc.xml.names import signature_name
@@ -42,87 +42,9 @@ KINDS = {
 """Elements by their signatures."""
 
 
-@dataclass(frozen=True)
-class Calculator:
-    """A program: operators in all and by kind, nanoseconds a pixel on the reference engine along
-    the dearest path, stack, temporaries, variables it reads; refused: why it cannot be run."""
-
-    operators: int
-    kinds: dict[str, int]
-    nanoseconds: float | None = None
-    stack: int | None = None
-    temporaries: int | None = None
-    variables: tuple[str, ...] = ()
-    refused: str | None = None
-    remarks: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Part:
-    """An element: its kind, channels, bytes, size in its own terms; inside: how many elements of
-    each kind a calculator calls."""
-
-    kind: str
-    inputs: int
-    outputs: int
-    bytes: int
-    size: str = ""
-    calculator: Calculator | None = None
-    inside: dict[str, int] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Transform:
-    """A tag of elements; same: the tag that it shares them with."""
-
-    tag: str
-    name: str
-    inputs: int
-    outputs: int
-    elements: tuple[Part, ...]
-    same: str | None = None
-
-
-@dataclass(frozen=True)
-class Channel:
-    """A multiplex channel; default is None where the profile has none."""
-
-    name: str
-    default: float | None
-
-
-@dataclass(frozen=True)
-class Variable:
-    """An environment variable that a program reads, and what the profile says of it."""
-
-    signature: str
-    name: str = ""
-    range: str = ""
-    default: str = ""
-
-
-@dataclass(frozen=True)
-class Inspection:
-    """A profile at a glance; see the fields' own types. verdicts: what is wrong, by who says it."""
-
-    path: str
-    bytes: int
-    device_class: str
-    class_name: str
-    version: str
-    title: str
-    spaces: dict[str, str]
-    channels: tuple[Channel, ...]
-    variables: tuple[Variable, ...]
-    transforms: tuple[Transform, ...]
-    other_tags: dict[str, str]
-    metadata: dict[str, str]
-    verdicts: dict[str, tuple[str, ...]]
-
-
 def prove(profile: Profile, path: str) -> None:
     """Prove every program of a profile safe to run; ProgramError names the tag and operation."""
-    for signature, pipeline in _pipelines(profile):
+    for signature, pipeline in _pipelines(profile.tags):
         for index, element in enumerate(pipeline.elements):
             if isinstance(element, Program):
                 verify(element, f"{path}, tag '{signature}', element {index}")
@@ -161,13 +83,16 @@ def inspect(path: str | Path, engine: bool = True) -> Inspection:
     )
 
 
-def _pipelines(profile: Profile) -> Iterator[tuple[str, Pipeline]]:
-    """Transforms, each once."""
+def _pipelines(tags: Mapping[str, Tag]) -> Iterator[tuple[str, Pipeline]]:
+    """Transforms by their tags; those in a structure, once, as `bcp0.xfrm`."""
     seen: set[int] = set()
-    for signature, tag in profile.tags.items():
-        if isinstance(tag, Pipeline) and id(tag) not in seen:
-            seen.add(id(tag))
+    for signature, tag in tags.items():
+        if isinstance(tag, Pipeline):
             yield signature, tag
+        elif isinstance(tag, Structure) and id(tag) not in seen:
+            seen.add(id(tag))
+            for member, pipeline in _pipelines(tag.members):
+                yield f"{signature}.{member}", pipeline
 
 
 def _spaces(profile: Profile) -> dict[str, str]:
@@ -224,10 +149,9 @@ def _variables(profile: Profile, transforms: tuple[Transform, ...]) -> tuple[Var
 
 def _transforms(profile: Profile) -> Iterator[Transform]:
     first: dict[int, str] = {}
-    for signature, tag in profile.tags.items():
-        if not isinstance(tag, Pipeline):
-            continue
-        name = TAGS[signature].name if signature in TAGS else ""
+    for signature, tag in _pipelines(profile.tags):
+        kind = TAGS.get(signature[:4])
+        name = kind.name if kind else ""
         same = first.setdefault(id(tag), signature)
         shared = same if same != signature else None
         parts = () if shared else tuple(_part(e, signature, i) for i, e in enumerate(tag.elements))

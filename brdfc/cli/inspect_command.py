@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from brdfc.inspection import Calculator, Inspection, Part, Transform
+    from brdfc.inspected import Calculator, Inspection, Part, Transform
 
 _WIDTH = 100
 _LABEL = 14
