@@ -22,6 +22,7 @@ ORDER = [
     "laws",
     "icc",
     "profiles",
+    "xml",
     "cmm",
     "images",
     "fit",

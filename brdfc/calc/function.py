@@ -19,7 +19,7 @@ from brdfc.calc.operators import (
     SELECT,
     Operand,
 )
-from brdfc.calc.program import MAX_NESTING, Block, If, Instruction, Op, Select
+from brdfc.calc.program import MAX_NESTING, MAX_OPERATIONS, Block, If, Instruction, Op, Select
 from brdfc.source.errors import ProgramError
 
 Word = tuple[bytes, bytes]
@@ -158,4 +158,6 @@ def decode_function(data: bytes, where: str) -> Block:
     # Other writers over-state the size of a function with sub-elements; the count is what holds.
     if 12 + 8 * count > len(data):
         raise ProgramError(f"{count} operations are claimed, more than fit", where=where)
+    if count > MAX_OPERATIONS:
+        raise ProgramError(f"{count} operations, more than {MAX_OPERATIONS:,}", where=where)
     return decode_block(list(struct.iter_unpack(">4s4s", data[12 : 12 + 8 * count])), where)

@@ -38,15 +38,26 @@ def cost(name: str, components: int = 1) -> float:
     return table.dispatch + row.first + (components - 1) * row.more
 
 
-def nanoseconds(block: Block, elements: Sequence[Element] = ()) -> float:
+def nanoseconds(
+    block: Block,
+    elements: Sequence[Element] = (),
+    known: dict[tuple[int, int], float] | None = None,
+) -> float:
     """Time per pixel: of both branches by their shares of the pixels where those are known, else
     of the dearest one. Variables count as defined: an `if` right after `env` runs its first block.
-    Without its elements, a block's calls count as if of one channel.
+    Without its elements, a block's calls count as if of one channel. known: what blocks inside
+    take, by identity: one that is called from many places is added up once.
     """
+    known = {} if known is None else known
     total = 0.0
     for step in steps(block, elements):
         total += cost(step.name, step.components)
-        times = [nanoseconds(*body) for body in step.bodies]
+        times = []
+        for inner, inner_elements in step.bodies:
+            key = id(inner), id(inner_elements)
+            if key not in known:
+                known[key] = nanoseconds(inner, inner_elements, known)
+            times.append(known[key])
         if step.share is not None:
             total += step.share * times[0] + (1 - step.share) * times[1]
         elif times:

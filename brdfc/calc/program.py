@@ -16,6 +16,10 @@ MAX_NESTING = 64
 """How deep blocks may stand in blocks and calculators in calculators, so that no program from
 outside exhausts Python's stack."""
 
+MAX_OPERATIONS = 1 << 17
+"""How many operations a main function may have, so that none from outside exhausts memory; the
+largest of the ICC's samples has 80,000."""
+
 
 @dataclass(frozen=True)
 class Op:

@@ -72,10 +72,12 @@ class Samples:
                 "bytes are left",
                 where=where,
             )
-        samples = Samples(storage, bytes(data[offset:end]))
-        if not np.isfinite(samples.values).all():
-            raise ProgramError("a sample is NaN or infinite", where=where)
-        return samples
+        # Looked at in place, so that a large table that is refused is not copied first.
+        stored = np.frombuffer(data, dtype=storage.dtype, count=count, offset=offset)
+        wrong = np.flatnonzero(~np.isfinite(stored))
+        if len(wrong):
+            raise ProgramError(f"sample {wrong[0]} is NaN or infinite", where=where)
+        return Samples(storage, bytes(data[offset:end]))
 
     @property
     def count(self) -> int:

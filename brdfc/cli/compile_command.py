@@ -118,6 +118,9 @@ def command(
 ) -> None:
     """Compile MODEL, a .brdf file or a library model, to a MID and an MVIS profile.
 
+    An .xml file, as `brdfc xml` and the ICC's tools write it, is compiled to the profile that it
+    describes.
+
     Equivalent forms of the formula are searched, and the cheapest that is accurate enough is
     taken. The program is checked against the model in high precision over its whole domain before
     anything is written.
@@ -133,7 +136,13 @@ def command(
       brdfc compile ward -o angles.icc --encode ncolour
       brdfc compile ward -o scene_mvis.icc --scene scene.toml
       brdfc compile ward -o spectral_mvis.icc --spectral 400nm..700nm,10nm --illuminant A
+      brdfc compile display.xml -o display.icc
     """
+    if model.lower().endswith(".xml"):
+        from brdfc.cli.compile_xml import compile_xml
+
+        compile_xml(model, output)
+        return
     from brdfc.calc.price import operations
     from brdfc.compiler import compile_model
     from brdfc.files import refuse_same, write_all

@@ -17,18 +17,20 @@ _COMMANDS = {
     "calibrate": "Measure what calculator operators cost on this machine.",
     "chart": "Chart speed against accuracy for every form of a model.",
     "check": "Verify everything that can be verified about a model or a profile.",
-    "compile": "Compile a reflectance model to profiles.",
+    "compile": "Compile a reflectance model to profiles, or XML to a profile.",
     "data": "Summarise measured reflectance and what it covers.",
     "disasm": "Print the calculator text of a profile.",
     "eval": "Evaluate single pixels through profiles.",
     "export": "Write a model's formula for other tools, as FPCore.",
     "fit": "Fit a model's coefficients to measurements.",
+    "inspect": "Show what is in a profile, on one screen.",
     "measure": "Take measurements from photographs of a cylinder.",
     "models": "List the model library, or show one model.",
     "plot": "Draw curves, lobes, strips of colours, lit bodies.",
     "scene-chart": "Compare the models of the library in one scene.",
     "select": "Choose the smallest model that measurements support.",
     "stability": "Show where a model fails in float32, and by how much.",
+    "xml": "Write a profile as the XML of the ICC's tools.",
 }
 
 

@@ -15,8 +15,9 @@ from brdfc.icc.signatures import signature_bytes, signature_text
 from brdfc.icc.types import Tag, decode_tag
 from brdfc.source.errors import ProfileError, ProgramError
 
-FILE_LIMIT = 64 * 1024 * 1024
-"""Larger files are not read; profiles with the largest spectral tables stay well below."""
+FILE_LIMIT = 48 * 1024 * 1024
+"""Larger files are not read, nor written: a table is held three times while it is read. Profiles
+with the largest spectral tables stay well below."""
 
 TABLE_START = HEADER_SIZE + 4
 

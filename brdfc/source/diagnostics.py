@@ -30,7 +30,8 @@ class Diagnostic:
     notes: tuple[tuple[Span, str], ...] = ()
 
     def __str__(self) -> str:
-        parts = [f"{self.span}: error: {self.message}"]
+        message = self.message if len(self.message) <= _SAID else self.message[:_SAID] + "..."
+        parts = [f"{self.span}: error: {message}"]
         parts += _drawn(self.span, f"expected {self.expected}" if self.expected else "")
         for span, note in self.notes:
             parts += [f"  {span}: {note}", *_drawn(span, "")]
@@ -39,10 +40,19 @@ class Diagnostic:
         return "\n".join(parts)
 
 
+_SAID = 600
+"""Characters that a message has at most: it may quote a text from outside."""
+_DRAWN = 160
+"""Characters that are shown of a line; of a longer one, those around the span."""
+
+
 def _drawn(span: Span, label: str) -> list[str]:
     """The line with a caret under the span, at most to the end of the first line."""
     line = span.line_text
     before = line[: span.column - 1]
+    if len(line) > _DRAWN:
+        first = max(0, len(before) - _DRAWN // 2)
+        line, before = line[first : first + _DRAWN], before[first:]
     width = max(1, min(span.end - span.start, len(line) - len(before)))
     # Tabs are kept in front of the carets, so that they stand under the text at any tab width.
     indent = "".join("\t" if character == "\t" else " " for character in before)
@@ -50,8 +60,14 @@ def _drawn(span: Span, label: str) -> list[str]:
     return [f"{span.line:>5} | {line}", f"      | {carets}"]
 
 
+_LONGEST_NAME = 100
+"""Of longer ones no likeness is sought: it takes time that grows with the square."""
+
+
 def nearest(name: str, known: Iterable[str]) -> str | None:
     """The known name a mistyped one most resembles, or None; for hints."""
+    if len(name) > _LONGEST_NAME:
+        return None
     known = sorted(set(known))
     exact = [k for k in known if k.lower() == name.lower()]
     close = exact or difflib.get_close_matches(name, known, n=9, cutoff=0.6)

@@ -66,11 +66,11 @@ CASES = {
     ),
     "sub-element by name": (
         "{ mtx{M} }",
-        "ward.calc:1:6: error: '{' cannot stand here\n"
+        "ward.calc:1:3: error: 'mtx{M}' refers to a name, and this text has none\n"
         "    1 | { mtx{M} }\n"
-        "      |      ^\n"
-        "          hint: a block stands after if, else, case and dflt only; "
-        "sub-elements are called by number",
+        "      |   ^^^^^^\n"
+        "          hint: variables, macros and channels have names in XML only; here they are "
+        "called by number",
     ),
     "glued to a bracket": (
         "{ in[0,3]pop }",
@@ -130,7 +130,7 @@ def test_message(text, expected):
         ("{ 1 if { } else { } else { } }", "'else' cannot stand here"),
         ("{ if(3) { } }", "'if(3)' cannot stand here"),
         ("{ in[0,3) }", "'in[0,3)' cannot stand here"),
-        ("{ in[0, 3] }", "'in[0,' cannot stand here"),
+        ("{ in[0 3] }", "'in' takes [start,count]"),
         ("{ ~ }", "'~' cannot stand here"),
         ("{ \0 }", "cannot stand here"),
         ("{ in[] }", "'in' takes [start,count]"),

@@ -1,0 +1,222 @@
+"""What a person wants to know of a profile, gathered."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from brdfc.calc.binary import encode_element
+from brdfc.calc.census import census
+from brdfc.calc.curves import CurveSet
+from brdfc.calc.price import operations, price
+from brdfc.calc.program import Element, Program
+from brdfc.calc.tables import LookupTable
+from brdfc.calc.verify import portability, verify
+from brdfc.cmm import reference
+from brdfc.icc.profile import Profile
+from brdfc.icc.signatures import (
+    DEVICE_CLASSES,
+    TAGS,
+    signature_bytes,
+    space_channels,
+    space_text,
+)
+from brdfc.icc.texts import Dictionary, LocalizedText, Utf8Array
+from brdfc.icc.types import NumberArray, Pipeline, Structure, Tag
+from brdfc.icc.validate import validate
+from brdfc.inspected import Calculator, Channel, Inspection, Part, Transform, Variable
+from brdfc.profiles.metadata import describe, value_text
+from brdfc.source.errors import BrdfcError, ProgramError
+from brdfc.xml.names import signature_name
+
+KINDS = {
+    "calc": "calculator",
+    "matf": "matrix",
+    "cvst": "curves",
+    "clut": "lookup table",
+    "xclt": "lookup table",
+    "tint": "tint array",
+    "XtoJ": "XYZ to Jab",
+    "JtoX": "Jab to XYZ",
+}
+"""Elements by their signatures."""
+
+
+def prove(profile: Profile, path: str) -> None:
+    """Prove every program of a profile safe to run; ProgramError names the tag and operation."""
+    for signature, pipeline in _pipelines(profile.tags):
+        for index, element in enumerate(pipeline.elements):
+            if isinstance(element, Program):
+                verify(element, f"{path}, tag '{signature}', element {index}")
+
+
+def inspect(path: str | Path, engine: bool = True) -> Inspection:
+    """The profile in a file. engine: ask the reference engine for its verdict too.
+
+    Raises ProfileError for what is no profile.
+    """
+    profile = Profile.load(path)
+    header = profile.header
+    title = profile.tags.get("desc")
+    metadata = profile.tags.get("meta")
+    transforms = tuple(_transforms(profile))
+    major, minor = header.version >> 24, header.version >> 16 & 0xFF
+    device_class = DEVICE_CLASSES.get(header.device_class)
+    return Inspection(
+        path=str(path),
+        bytes=len(profile.source or b""),
+        device_class=header.device_class.strip(),
+        class_name=device_class.name if device_class else "unknown",
+        version=f"{major:x}.{minor:02x}",
+        title=title.text if isinstance(title, LocalizedText) else "",
+        spaces=_spaces(profile),
+        channels=_channels(profile),
+        variables=_variables(profile, transforms),
+        transforms=transforms,
+        other_tags={
+            signature: TAGS[signature].name if signature in TAGS else ""
+            for signature, tag in profile.tags.items()
+            if not isinstance(tag, Pipeline)
+        },
+        metadata=dict(metadata.entries) if isinstance(metadata, Dictionary) else {},
+        verdicts=_verdicts(profile, transforms, path if engine else None),
+    )
+
+
+def _pipelines(tags: Mapping[str, Tag]) -> Iterator[tuple[str, Pipeline]]:
+    """Transforms by their tags; those in a structure, once, as `bcp0.xfrm`."""
+    seen: set[int] = set()
+    for signature, tag in tags.items():
+        if isinstance(tag, Pipeline):
+            yield signature, tag
+        elif isinstance(tag, Structure) and id(tag) not in seen:
+            seen.add(id(tag))
+            for member, pipeline in _pipelines(tag.members):
+                yield f"{signature}.{member}", pipeline
+
+
+def _spaces(profile: Profile) -> dict[str, str]:
+    header = profile.header
+    spaces = {
+        "device": header.colour_space,
+        "PCS": header.pcs,
+        "spectral PCS": header.spectral_pcs,
+        "MCS": header.mcs,
+    }
+    found = {name: _space(space) for name, space in spaces.items() if any(space)}
+    if "spectral PCS" in found:
+        at = header.spectral_range
+        found["spectral PCS"] += f", {at.start:g}..{at.end:g} nm"
+    return found
+
+
+def _space(space: bytes) -> str:
+    text, count = space_text(space).strip(), space_channels(space)
+    # The count in the name is hexadecimal.
+    return f"{text} ({count} channels)" if count and len(text) == 6 else text
+
+
+def _channels(profile: Profile) -> tuple[Channel, ...]:
+    names, defaults = profile.tags.get("mcta"), profile.tags.get("mdv ")
+    if not isinstance(names, Utf8Array):
+        return ()
+    values: list[float | None] = [None] * len(names.names)
+    if isinstance(defaults, NumberArray) and len(defaults.values) == len(values):
+        one = {"ui08": 255, "ui16": 65535}.get(defaults.kind, 1)
+        values = [value / one for value in defaults.values]
+    return tuple(map(Channel, names.names, values))
+
+
+def _variables(profile: Profile, transforms: tuple[Transform, ...]) -> tuple[Variable, ...]:
+    described = {d.signature: d for d in describe(profile, "env")}
+    read = {
+        signature: None
+        for transform in transforms
+        for part in transform.elements
+        if part.calculator
+        for signature in part.calculator.variables
+    }
+    found = []
+    for signature in read:
+        d = described.get(signature)
+        if d is None:
+            found.append(Variable(signature_name(signature_bytes(signature.ljust(4))).strip()))
+        else:
+            default = value_text(d.default, d.type, 6)
+            found.append(Variable(signature, d.name, d.range_text, default))
+    return tuple(found)
+
+
+def _transforms(profile: Profile) -> Iterator[Transform]:
+    first: dict[int, str] = {}
+    for signature, tag in _pipelines(profile.tags):
+        kind = TAGS.get(signature[:4])
+        name = kind.name if kind else ""
+        same = first.setdefault(id(tag), signature)
+        shared = same if same != signature else None
+        parts = () if shared else tuple(_part(e, signature, i) for i, e in enumerate(tag.elements))
+        yield Transform(signature, name, tag.inputs, tag.outputs, parts, shared)
+
+
+def _part(element: Element, signature: str, index: int) -> Part:
+    kind = KINDS.get(element.signature, f"'{element.signature}'")
+    size = len(encode_element(element))
+    calculator = None
+    inside: dict[str, int] = {}
+    if isinstance(element, Program):
+        calculator = _calculator(element, f"tag '{signature}', element {index}")
+        for inner in element.elements:
+            name = KINDS.get(inner.signature, f"'{inner.signature}'")
+            inside[name] = inside.get(name, 0) + 1
+    return Part(kind, element.inputs, element.outputs, size, _size(element), calculator, inside)
+
+
+def _size(element: Element) -> str:
+    if isinstance(element, LookupTable):
+        grid = " x ".join(map(str, element.grid))
+        return f"{grid} points of {element.samples.storage.name.lower()}"
+    if isinstance(element, CurveSet):
+        distinct = len({id(curve) for curve in element.curves})
+        return f"{distinct} different" if distinct < len(element.curves) else ""
+    return ""
+
+
+def _calculator(program: Program, where: str) -> Calculator:
+    count, kinds = operations(program), census(program.body)
+    try:
+        facts = verify(program, where)
+    except ProgramError as error:
+        return Calculator(count, kinds, refused=str(error))
+    return Calculator(
+        count,
+        kinds,
+        price(program),
+        facts.stack,
+        facts.temporaries,
+        tuple(v for v in facts.variables if v not in ("true", "ndef")),
+        remarks=tuple(portability(program)),
+    )
+
+
+def _verdicts(
+    profile: Profile, transforms: tuple[Transform, ...], path: str | Path | None
+) -> dict[str, tuple[str, ...]]:
+    calculators = [p.calculator for t in transforms for p in t.elements if p.calculator]
+    verdicts = {
+        "rules": tuple(map(str, validate(profile))),
+        "programs": tuple(c.refused for c in calculators if c.refused),
+        "portability": tuple(remark for c in calculators for remark in c.remarks),
+    }
+    if path is not None and reference.available() and not verdicts["programs"]:
+        verdicts["reference"] = tuple(_reference(path))
+    return verdicts
+
+
+def _reference(path: str | Path) -> Iterator[str]:
+    try:
+        verdict, report = reference.validate(path)
+    except BrdfcError as error:
+        yield str(error)
+        return
+    if verdict != "OK":
+        yield " ".join([f"{verdict}:", *report.split()])

@@ -1,0 +1,1 @@
+"""Profiles as the reference's XML, written and read."""
