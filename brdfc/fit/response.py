@@ -113,6 +113,12 @@ class Response:
             np.stack([self._whole(part, found) for part in parts], axis=-1),
         )
 
+    def parts(self, found: Array) -> tuple[Array, list[Array]]:
+        """The same, each slope an array of its own that broadcasts to (..., n, width): what does
+        not depend on the coefficients, or on the component, is there once."""
+        values, *slopes = self._slopes(self._named(found))
+        return _defined(values), [_defined(slope) for slope in slopes]
+
     def _named(self, found: Array) -> dict[str, Array]:
         """Arrays (..., 1, components) by the names of quantities."""
         columns: dict[str, list[int]] = {}
@@ -121,9 +127,15 @@ class Response:
         return {name: found[..., None, places] for name, places in columns.items()}
 
     def _whole(self, values: Array, found: Array) -> Array:
-        """Broadcast; what the formula leaves undefined is 0."""
-        shape = (*found.shape[:-1], self.count, self.width)
-        return np.nan_to_num(np.broadcast_to(values, shape), nan=0.0, posinf=0.0, neginf=0.0)
+        """Broadcast, and defined."""
+        return _defined(np.broadcast_to(values, (*found.shape[:-1], self.count, self.width)))
+
+
+def _defined(values: Array) -> Array:
+    """What the formula leaves undefined is 0."""
+    if np.isfinite(values).all():
+        return values
+    return np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
 
 
 def _linear(names: Sequence[str], slopes: Sequence[Expression]) -> set[str]:
