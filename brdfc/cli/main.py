@@ -22,6 +22,7 @@ _COMMANDS = {
     "disasm": "Print the calculator text of a profile.",
     "eval": "Evaluate single pixels through profiles.",
     "export": "Write a model's formula for other tools, as FPCore.",
+    "fit-image": "Fit a model to every pixel of a stack of images.",
     "measure": "Take measurements from photographs of a cylinder.",
     "models": "List the model library, or show one model.",
     "plot": "Draw curves, lobes, strips of colours, lit bodies.",

@@ -85,7 +85,7 @@ class Starts:
             values = self._scaling.values(places)
             values[:, self._linear] = np.stack([f[best, np.arange(count)] for f in found], axis=1)
             places = np.where(self._linear, self._scaling.places(values), places)
-        return np.rint(places * _STEPS) / _STEPS
+        return np.asarray(np.rint(places * _STEPS) / _STEPS)
 
 
 class _Products:
@@ -112,7 +112,7 @@ class _Products:
             across //= 2
         parts = pixels.reshape(-1, across, samples).transpose(0, 2, 1)
         found = (self._distinct @ parts).transpose(0, 2, 1, 3).reshape(-1, count)
-        return found[self._place]
+        return np.asarray(found[self._place])
 
 
 def _points(response: Response, linear: NDArray[np.bool_]) -> Array:

@@ -8,7 +8,7 @@ ones alone take long. The steps are matrix products of NumPy's over blocks of pi
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +19,9 @@ from brdfc.fit.fitting import Scaling
 from brdfc.fit.objectives import SCALES
 from brdfc.fit.pixel_starts import Starts
 from brdfc.fit.response import Response
+from brdfc.lang.model import Model
+from brdfc.source.errors import FitError
+from brdfc.symbolic.formula import NO_WHITE
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -26,7 +29,7 @@ Equations = tuple[Array, Array, Array]
 
 BLOCK = 256
 """Pixels that are computed together; their slopes still fit a processor's cache."""
-_BATCH = 16 * BLOCK
+BATCH = 16 * BLOCK
 """Pixels that go on together, so that the few that take long fill blocks too."""
 MOST_STEPS = 200
 ARRIVED = 1e-6
@@ -54,19 +57,39 @@ class Pixels:
 
 
 class PixelFit:
-    """Fits of a response to pixels. The cosines of incidence are those of its directions (n, 4)."""
+    """Fits of a model in the full geometry to pixels; see Response for fixed and white.
 
-    def __init__(self, response: Response, directions: Array) -> None:
-        self.response = response
+    directions: (n, 4). Raises FitError where they are fewer than the coefficients need. Another
+    process is sent what it was made from.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        directions: Array,
+        fixed: Mapping[str, Sequence[float]] = {},
+        white: Sequence[float] = NO_WHITE,
+    ) -> None:
+        self._made_from = model, directions, dict(fixed), tuple(white)
+        self.response = Response(model, directions, fixed, white)
+        self._least = least_geometries(self.response)
+        if len(directions) < self._least:
+            raise FitError(
+                f"{len(directions)} geometries for {len(self.response.coefficients)} coefficients "
+                f"of '{model.name}'; {self._least} are needed at least",
+                hint="take a model with fewer, or fix some: --set NAME=VALUE",
+            )
         self._cosine = np.cos(directions[:, :1])
         self._scale = SCALES["cube-root"]
-        self._scaling = Scaling(response)
-        self._starts = Starts(response, BLOCK)
-        self._least = least_geometries(response)
+        self._scaling = Scaling(self.response)
+        self._starts = Starts(self.response, BLOCK)
+
+    def __reduce__(self) -> tuple[type[PixelFit], tuple[object, ...]]:
+        return PixelFit, self._made_from
 
     def __call__(self, values: NDArray[np.floating]) -> Pixels:
         """For BRDF values (pixels, n, width); those that are NaN or negative are left out."""
-        parts = [self._batch(values[at : at + _BATCH]) for at in range(0, len(values), _BATCH)]
+        parts = [self._batch(values[at : at + BATCH]) for at in range(0, len(values), BATCH)]
         return Pixels(
             *(
                 np.concatenate([getattr(part, name) for part in parts])

@@ -79,7 +79,7 @@ class Response:
             raise FitError(f"'{model.name}' has no coefficient left to fit")
         slopes = [derivative(reflectance, q.name, index) for q, index in wanted]
         linear = _linear([q.name for q, _ in wanted], slopes)
-        self.model, self.white = model, tuple(white)
+        self.model, self.white, self.reflectance = model, tuple(white), reflectance
         self.coefficients = tuple(
             Coefficient(
                 q.component_names[index],
@@ -128,7 +128,8 @@ class Response:
 
     def _whole(self, values: Array, found: Array) -> Array:
         """Broadcast, and defined."""
-        return _defined(np.broadcast_to(values, (*found.shape[:-1], self.count, self.width)))
+        shape = (*found.shape[:-1], self.count, self.width)
+        return _defined(np.array(np.broadcast_to(values, shape)))
 
 
 def _defined(values: Array) -> Array:
