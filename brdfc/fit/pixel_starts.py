@@ -22,7 +22,9 @@ Array = NDArray[np.float64]
 _POINTS = {0: (1,), 1: (32,), 2: (12, 12)}
 """Of the grid, along each coefficient that is not linear."""
 _SPREAD = 256
-"""Points where those are three or more."""
+"""Points where those are three or more,"""
+_STARTS = 4
+"""which are too few to trust the best: so many starts, the best of every fourth point."""
 _SAME = 1e-9
 """Points whose losses differ by this share of what is measured are as good: the first is taken."""
 _STEPS = 10007
@@ -58,8 +60,8 @@ class Starts:
         self._high = [c.high for c in response.coefficients if c.linear]
 
     def __call__(self, given: Array, weight: Array) -> Array:
-        """Places (pixels, p) in 0..1 for BRDF values (pixels, n k), and by how much a difference of
-        each counts."""
+        """Places (starts, pixels, p) in 0..1 for BRDF values (pixels, n k), and by how much a
+        difference of each counts."""
         count = len(given)
         squares = np.zeros((self._block, weight.shape[1]))
         squares[:count] = weight**2
@@ -78,12 +80,16 @@ class Starts:
         for a in range(size):
             loss -= 2 * target[a] * found[a]
         scale = (weighted[:count] * given).sum(axis=1)
-        loss = loss[:, :count]
-        best = (loss <= loss.min(axis=0) + _SAME * scale).argmax(axis=0)
+        several = _STARTS if len(loss) == _SPREAD else 1
+        parts = loss[:, :count].reshape(-1, several, count)
+        best = (parts <= parts.min(axis=0) + _SAME * scale).argmax(axis=0)
+        best = best * several + np.arange(several)[:, None]
         places = self._points[best].copy()
         if size:
             values = self._scaling.values(places)
-            values[:, self._linear] = np.stack([f[best, np.arange(count)] for f in found], axis=1)
+            values[..., self._linear] = np.stack(
+                [f[best, np.arange(count)] for f in found], axis=-1
+            )
             places = np.where(self._linear, self._scaling.places(values), places)
         return np.asarray(np.rint(places * _STEPS) / _STEPS)
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfc.fit.checks import least_geometries
-from brdfc.fit.fitting import Scaling
+from brdfc.fit.fitting import AGREED, Scaling
 from brdfc.fit.objectives import SCALES
 from brdfc.fit.pixel_starts import Starts
 from brdfc.fit.response import Response
@@ -116,16 +116,20 @@ class PixelFit:
         count, width = len(given), given[0].size
         seen = given * self._cosine
         weight = np.where(valid, self._scale.slope(seen) * self._cosine, 0.0)
-        places = np.concatenate(
+        starts = np.concatenate(
             [
                 self._starts(given[part].reshape(-1, width), weight[part].reshape(-1, width))
                 for part in blocks(count)
-            ]
+            ],
+            axis=1,
         )
-        target = self._scale.seen(seen)
-        squares, converged = _Descent(self, target, valid).run(places)
-        loss = np.sqrt(squares / valid.sum(axis=(1, 2)))
-        return self._scaling.values(places), loss, converged
+        descent = _Descent(self, self._scale.seen(seen), valid)
+        ends = [descent.run(places) for places in starts]
+        squares, converged = (np.stack(found) for found in zip(*ends, strict=True))
+        # Of ends that are as good, one that has converged.
+        best = np.where(converged, squares, squares * (1 + AGREED)).argmin(axis=0), np.arange(count)
+        loss = np.sqrt(squares[best] / valid.sum(axis=(1, 2)))
+        return self._scaling.values(starts[best]), loss, converged[best]
 
     def equations(self, places: Array, target: Array, valid: Mask) -> Equations:
         """Sums of squares (pixels,) at places (pixels, p), their gradient over 2 (pixels, p), and
@@ -154,7 +158,7 @@ class _Descent:
         self._exact = EXACT**2 * valid.sum(axis=(1, 2))
 
     def run(self, places: Array) -> tuple[Array, Mask]:
-        """The sums of squares that places (pixels, p) are moved to, and which have converged."""
+        """Move places (pixels, p); the sums of squares there, and which have converged."""
         count = len(places)
         first, least, most = _DAMPING
         damping = np.full(count, first)
