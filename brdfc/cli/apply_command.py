@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import signal
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -18,6 +17,7 @@ from brdfc.cli.options import (
     warn_of_display,
 )
 from brdfc.cli.search_options import end_progress, shown_progress
+from brdfc.cli.stopping import stop_when_told
 from brdfc.cli.sweep_options import swept
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def command(
     if not profiles:
         raise click.UsageError("give the profiles first, then the image")
     refuse_same([output], files)
-    _stop_when_told()
+    stop_when_told()
     pages = swept(environment)
     if resume and len(pages) == 1:
         raise click.UsageError("--resume is for sweeps: variables with several values")
@@ -137,15 +137,6 @@ def _held(chosen: Rendering) -> str:
     from brdfc.cmm.rendering import Target
 
     return "sRGB can show" if chosen.to is Target.SRGB else "the integers stand for"
-
-
-def _stop_when_told() -> None:
-    """Make an end that is asked for clean up as an interruption does."""
-
-    def stop(number: int, frame: object) -> None:
-        raise KeyboardInterrupt
-
-    signal.signal(signal.SIGTERM, stop)
 
 
 class _Compiled:

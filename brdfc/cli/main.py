@@ -23,6 +23,7 @@ _COMMANDS = {
     "eval": "Evaluate single pixels through profiles.",
     "export": "Write a model's formula for other tools, as FPCore.",
     "fit": "Fit a model's coefficients to measurements.",
+    "fit-image": "Fit a model to every pixel of a stack of images.",
     "inspect": "Show what is in a profile, on one screen.",
     "measure": "Take measurements from photographs of a cylinder.",
     "models": "List the model library, or show one model.",

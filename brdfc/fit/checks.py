@@ -30,9 +30,7 @@ def refuse(measured: Measurements, response: Response) -> None:
     if (measured.directions[:, :2] >= np.pi / 2).all():
         raise FitError("all measurements are at 90 degrees or beyond", where=measured.name)
     geometries = len(np.unique(measured.directions[usable.any(axis=1)].round(6), axis=0))
-    shaped = sum(not c.linear for c in response.coefficients)
-    shared = len({c.quantity for c in response.coefficients if c.linear})
-    least = shaped + shared
+    least = least_geometries(response)
     if geometries < least or usable.sum() < len(response.coefficients):
         raise FitError(
             f"{geometries} geometries and {int(usable.sum())} values for "
@@ -41,6 +39,13 @@ def refuse(measured: Measurements, response: Response) -> None:
             where=measured.name,
             hint="take a model with fewer, or fix some: --set NAME=VALUE",
         )
+
+
+def least_geometries(response: Response) -> int:
+    """How many geometries a model's coefficients need: colours of one quantity are found from
+    components of one."""
+    shaped = sum(not c.linear for c in response.coefficients)
+    return shaped + len({c.quantity for c in response.coefficients if c.linear})
 
 
 def before(measured: Measurements) -> Iterator[str]:

@@ -79,7 +79,7 @@ class Response:
             raise FitError(f"'{model.name}' has no coefficient left to fit")
         slopes = [derivative(reflectance, q.name, index) for q, index in wanted]
         linear = _linear([q.name for q, _ in wanted], slopes)
-        self.model, self.white = model, tuple(white)
+        self.model, self.white, self.reflectance = model, tuple(white), reflectance
         self.coefficients = tuple(
             Coefficient(
                 q.component_names[index],
@@ -113,6 +113,12 @@ class Response:
             np.stack([self._whole(part, found) for part in parts], axis=-1),
         )
 
+    def parts(self, found: Array) -> tuple[Array, list[Array]]:
+        """The same, each slope an array of its own that broadcasts to (..., n, width): what does
+        not depend on the coefficients, or on the component, is there once."""
+        values, *slopes = self._slopes(self._named(found))
+        return _defined(values), [_defined(slope) for slope in slopes]
+
     def _named(self, found: Array) -> dict[str, Array]:
         """Arrays (..., 1, components) by the names of quantities."""
         columns: dict[str, list[int]] = {}
@@ -121,9 +127,16 @@ class Response:
         return {name: found[..., None, places] for name, places in columns.items()}
 
     def _whole(self, values: Array, found: Array) -> Array:
-        """Broadcast; what the formula leaves undefined is 0."""
+        """Broadcast, and defined."""
         shape = (*found.shape[:-1], self.count, self.width)
-        return np.nan_to_num(np.broadcast_to(values, shape), nan=0.0, posinf=0.0, neginf=0.0)
+        return _defined(np.array(np.broadcast_to(values, shape)))
+
+
+def _defined(values: Array) -> Array:
+    """What the formula leaves undefined is 0."""
+    if np.isfinite(values).all():
+        return values
+    return np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
 
 
 def _linear(names: Sequence[str], slopes: Sequence[Expression]) -> set[str]:

@@ -11,13 +11,14 @@ from threading import Event
 from brdfc.cmm.rendering import Rendering
 from brdfc.files import refuse_same, whole_file
 from brdfc.images.counts import Counts
-from brdfc.images.filling import fill
+from brdfc.images.filling import Filling, fill_here
 from brdfc.images.job import Choices, Job, prepared
+from brdfc.images.source import Source
 from brdfc.images.stream import in_order
 from brdfc.images.tiff import KINDS, open_samples
 from brdfc.images.unfinished import Unfinished, unfinished_file
 from brdfc.images.window import Window
-from brdfc.images.writing import laid_out, lay_out, opened_to_fill, write_compressed
+from brdfc.images.writing import laid_out, lay_out, write_compressed
 
 Progress = Callable[[int, int], None]
 
@@ -54,10 +55,8 @@ def apply_to_tiff(
         if job.format.compressed:
             counts = _compress(job, progress)
         elif choices.scheduler is not None:
-            from brdfc.images.cluster import fill_on_cluster
-
             with whole_file(job.target.absolute()) as temporary:
-                counts = fill_on_cluster(job, temporary, choices.scheduler, progress)
+                counts = _fill_on_cluster(job, temporary, choices.scheduler, progress)
         elif choices.resume:
             with unfinished_file(target, job.identity) as unfinished:
                 counts = _fill(job, unfinished, progress)
@@ -69,30 +68,25 @@ def apply_to_tiff(
 
 def _fill(job: Job, unfinished: Unfinished, progress: Progress) -> Counts:
     """All pages in one pass over the source, each window to where it belongs."""
-    spoiled = Event()
-    grid = job.plan.grid
     if unfinished.rows < 0:
         places = lay_out(unfinished.path, job.format, job.descriptions)
         unfinished.rows = 0
     else:
         places = laid_out(unfinished.path, job.format)
-    with opened_to_fill(unfinished.path) as file:
+    filling = Filling(job.computing, (places,))
+    counts = fill_here(filling, job.image, job.plan, [unfinished], progress)
+    job.refuse_faults(counts)
+    return counts
 
-        def work(window: Window) -> tuple[Window, Counts]:
-            return window, fill(job.image, job.computing, places, file, window, spoiled)
 
-        done, row = unfinished.rows * grid.width, Counts()
-        windows = grid.windows(unfinished.rows)
-        with closing(in_order(work, windows, job.plan.workers)) as results:
-            for window, counts in results:
-                row.add(counts)
-                if window.left + window.columns == grid.width:
-                    unfinished.reached(window.top + window.rows, row, file)
-                    row = Counts()
-                done += window.pixels
-                progress(done, grid.pixels)
-    job.refuse_faults(unfinished.counts)
-    return unfinished.counts
+def _fill_on_cluster(job: Job, path: Path, scheduler: str, progress: Progress) -> Counts:
+    from brdfc.images.cluster import fill_on_cluster
+
+    filling = Filling(job.computing, (lay_out(path, job.format, job.descriptions),))
+    source = Source.of(job.image)
+    counts = fill_on_cluster(filling, source, job.plan.grid, scheduler, progress)
+    job.refuse_faults(counts)
+    return counts
 
 
 def _compress(job: Job, progress: Progress) -> Counts:

@@ -9,23 +9,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from itertools import islice
-from pathlib import Path
 from threading import Event
 from typing import Any
 
 from brdfc import __version__
-from brdfc.images.computing import Computing
 from brdfc.images.counts import Counts
-from brdfc.images.filling import fill
-from brdfc.images.job import Job
-from brdfc.images.scaling import Scaling
-from brdfc.images.segments import State
-from brdfc.images.tiff import KINDS, open_samples
-from brdfc.images.window import Window
-from brdfc.images.writing import Places, lay_out, opened_to_fill
+from brdfc.images.filling import Filling
+from brdfc.images.source import SHARED, Readable
+from brdfc.images.window import Grid, Window
+from brdfc.images.writing import opened_to_fill
 from brdfc.source.errors import BrdfcError, ImageError, MissingExtraError
 
 TASK_PIXELS = 1 << 22
@@ -33,37 +28,25 @@ TASK_PIXELS = 1 << 22
 _TIMEOUT = 5
 """Seconds to wait for the scheduler, and for its first worker."""
 _ADDRESS = re.compile(r"((tcp|tls|wss?)://)?[^/\s]+:\d{1,5}/?")
-_SHARED = "every worker needs the source and the result's folder under the client's paths"
 
 
 @dataclass(frozen=True)
 class Share:
-    """What a worker is told: the source and the state it is in, what to compute, and where it
-    belongs."""
+    """What a worker is told: the source, what to compute, and where it belongs."""
 
-    source: Path
-    state: State
-    scaling: Scaling | None
-    computing: Computing
-    places: Places
+    source: Readable
+    filling: Filling
     version: str = __version__
 
     def fill(self, windows: Sequence[Window]) -> Counts:
         """Fill some windows; what was counted. Raises ImageError for what a worker cannot reach."""
         if self.version != __version__:
             raise ImageError(f"the worker has brdfc {__version__}, the client {self.version}")
-        if not self.source.exists():
-            raise ImageError("a worker does not see it", where=str(self.source), hint=_SHARED)
         counts, spoiled = Counts(), Event()
-        with open_samples(self.source, KINDS) as opened, opened_to_fill(self.places.path) as file:
-            image = opened.scaled(self.scaling)
-            if image.segments.state != self.state:
-                raise ImageError(
-                    "the file changed while it was read, or the worker has another",
-                    where=str(self.source),
-                )
+        with self.source.opened() as image, ExitStack() as stack:
+            files = [stack.enter_context(opened_to_fill(p.path)) for p in self.filling.results]
             for window in windows:
-                counts.add(fill(image, self.computing, self.places, file, window, spoiled))
+                counts.add(self.filling.fill(image, files, window, spoiled))
         return counts
 
 
@@ -75,13 +58,18 @@ def _filled(share: Share, windows: Sequence[Window]) -> Counts | BrdfcError:
         return error
     except OSError as error:
         reason = f"a worker cannot write it: {error.strerror or error}"
-        return ImageError(reason, where=str(share.places.path), hint=_SHARED)
+        return ImageError(reason, where=str(share.filling.results[0].path), hint=SHARED)
 
 
 def fill_on_cluster(
-    job: Job, path: Path, scheduler: str, progress: Callable[[int, int], None]
+    filling: Filling,
+    source: Readable,
+    grid: Grid,
+    scheduler: str,
+    progress: Callable[[int, int], None],
 ) -> Counts:
-    """Fill a file by the workers of a scheduler (tcp://host:8786); what was counted.
+    """Fill files that are laid out by the workers of a scheduler (tcp://host:8786); what was
+    counted.
 
     Raises MissingExtraError where distributed is not installed, ImageError where there is no
     scheduler or no worker, for what a worker cannot reach, and where workers die again and again.
@@ -89,18 +77,10 @@ def fill_on_cluster(
     with _connected(scheduler) as client:
         from distributed import as_completed
 
-        places = lay_out(path, job.format, job.descriptions)
-        image = job.image
-        share = Share(
-            Path(image.where).absolute(),
-            image.segments.state,
-            image.scaling,
-            job.computing,
-            places,
-        )
+        share = Share(source, filling)
         # A future that can be computed again, as data that is scattered could not.
         shared = client.submit(_same, share, pure=False)
-        tasks = list(_tasks(job))
+        tasks = list(_tasks(grid))
         futures = [client.submit(_filled, shared, windows, pure=False) for windows in tasks]
         pixels = {f.key: sum(w.pixels for w in t) for f, t in zip(futures, tasks, strict=True)}
         whole, done = Counts(), 0
@@ -111,13 +91,12 @@ def fill_on_cluster(
                     raise found
                 whole.add(found)
                 done += pixels[future.key]
-                progress(done, job.plan.grid.pixels)
+                progress(done, grid.pixels)
         except _lost_workers() as error:
             raise ImageError(f"the cluster cannot do it: {error}", where=scheduler) from error
         finally:
-            if done < job.plan.grid.pixels:
+            if done < grid.pixels:
                 client.cancel([shared, *futures])
-    job.refuse_faults(whole)
     return whole
 
 
@@ -125,8 +104,7 @@ def _same(share: Share) -> Share:
     return share
 
 
-def _tasks(job: Job) -> Iterator[tuple[Window, ...]]:
-    grid = job.plan.grid
+def _tasks(grid: Grid) -> Iterator[tuple[Window, ...]]:
     windows = grid.windows()
     while task := tuple(islice(windows, max(1, TASK_PIXELS // (grid.rows * grid.columns)))):
         yield task

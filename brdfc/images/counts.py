@@ -21,12 +21,14 @@ _FOLDED = 1024
 @dataclass
 class Counts:
     """Of some windows. faults: samples that are NaN or infinite; first: row, column and channel of
-    the first of them. outside: by quantity. clipped: pixels."""
+    the first of them. outside: by quantity. clipped: pixels. pixels: by what
+    else is said of them."""
 
     faults: int = 0
     first: Place | None = None
     outside: dict[str, int] = field(default_factory=dict)
     clipped: int = 0
+    pixels: dict[str, int] = field(default_factory=dict)
 
     def add(self, other: Counts) -> None:
         self.faults += other.faults
@@ -35,6 +37,8 @@ class Counts:
         self.first = min(places, default=None)
         for name, count in other.outside.items():
             self.outside[name] = self.outside.get(name, 0) + count
+        for name, count in other.pixels.items():
+            self.pixels[name] = self.pixels.get(name, 0) + count
 
 
 def counted(link: Link, columns: Sequence[int], band: NDArray[Any], window: Window) -> Counts:

@@ -119,7 +119,7 @@ def prepared(
         )
     if choices.scheduler is not None and choices.resume:
         raise ImageError("a run on a cluster cannot be resumed", hint="leave out --resume")
-    _check_room(target, form, len(renderings))
+    check_room(target, form, len(renderings))
     profiles = choices.profiles or (link.profile,)
     texts = tuple(described(each, profiles, kind, scaled, run) for each in renderings)
     computing = Computing(
@@ -146,7 +146,7 @@ def _tile(image: CoefficientImage, choices: Choices) -> int:
     return grain.rows if grain.rows == grain.columns and grain.rows % TILES == 0 else 256
 
 
-def _check_room(target: str | Path, form: Format, pages: int) -> None:
+def check_room(target: str | Path, form: Format, pages: int) -> None:
     """ImageError where the folder's disk cannot hold the result."""
     needed = 0 if form.compressed else form.page_bytes * pages
     folder = Path(target).absolute().parent
@@ -182,13 +182,14 @@ def _identity(
     matrices = [repr((r.white, r.observer, r.adaptation)) for r in renderings]
     return {
         "source": f"{size} bytes of {written}",
-        "profiles": _digest(*(p.source or p.to_bytes() for p in profiles)),
-        "variables": _digest(repr(environments).encode()),
-        "options": _digest(repr((form, matrices, texts)).encode()),
+        "profiles": digest(*(p.source or p.to_bytes() for p in profiles)),
+        "variables": digest(repr(environments).encode()),
+        "options": digest(repr((form, matrices, texts)).encode()),
     }
 
 
-def _digest(*parts: bytes) -> str:
+def digest(*parts: bytes) -> str:
+    """SHA-256 of some bytes, wherever one of them ends."""
     whole = hashlib.sha256()
     for part in parts:
         whole.update(hashlib.sha256(part).digest())

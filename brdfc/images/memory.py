@@ -32,14 +32,15 @@ def parse_size(text: str) -> int:
 class Cost:
     """Bytes that a window takes. held: for each pixel while it is read, computed and written;
     working: for each pixel of a piece that is computed with; segment: of a strip or tile while it
-    is decoded."""
+    is decoded; piece: pixels that are computed with at once, at most."""
 
     held: int
     working: int
     segment: int = 0
+    piece: int = WINDOW_PIXELS
 
     def window(self, pixels: int) -> int:
-        return pixels * self.held + min(pixels, WINDOW_PIXELS) * self.working + 2 * self.segment
+        return pixels * self.held + min(pixels, self.piece) * self.working + 2 * self.segment
 
 
 @dataclass(frozen=True)

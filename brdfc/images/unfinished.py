@@ -6,8 +6,9 @@ import fcntl
 import json
 import os
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from copy import deepcopy
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -52,6 +53,16 @@ class Unfinished:
         }
         write_whole(self.journal, (json.dumps(entry, indent=1) + "\n").encode())
         self._saved = time.monotonic()
+
+
+def least_done(several: Sequence[Unfinished]) -> tuple[int, Counts]:
+    """The rows that all of several files have, -1 where one is not laid out yet, and their counts;
+    all are set back to them."""
+    least = min(several, key=lambda each: each.rows)
+    rows, counts = least.rows, asdict(least.counts)
+    for each in several:
+        each.rows, each.counts = rows, Counts(**deepcopy(counts))
+    return rows, least.counts
 
 
 @contextmanager
@@ -110,6 +121,7 @@ def _found(part: Path, journal: Path, run: Mapping[str, str]) -> Unfinished:
         kept = Counts(
             outside={str(n): int(c) for n, c in counts["outside"].items()},
             clipped=int(counts["clipped"]),
+            pixels={str(n): int(c) for n, c in counts["pixels"].items()},
         )
         other = [name for name in run if before.get(name) != run[name]]
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:

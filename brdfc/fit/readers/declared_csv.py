@@ -14,7 +14,7 @@ and values may be empty.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -46,7 +46,7 @@ def read(path: Path, said: Declared) -> Measurements:
         raise MeasurementError(
             "no line names the columns: incident, reflection, ...", where=f"{path}, line {line}"
         )
-    states = _declarations(text, line, str(path))
+    states = declarations(text, line, str(path))
     unit, angles = said.unit or states.get("unit"), said.angles or states.get("angles")
     if unit is None:
         raise MeasurementError(
@@ -68,8 +68,9 @@ def read(path: Path, said: Declared) -> Measurements:
     return measured(read_rows, declared, states.get("name", path.stem))
 
 
-def _declarations(text: str, until: int, where: str) -> dict[str, str]:
-    """What the comments before a line declare."""
+def declarations(text: str, until: int, where: str, keys: Sequence[str] = KEYS) -> dict[str, str]:
+    """What the comments before a line declare, of these keys; MeasurementError for a key that is
+    declared twice, or nearly one of them."""
     states: dict[str, str] = {}
     for line, content in enumerate(text.splitlines()[: until - 1], start=1):
         key, colon, value = content.lstrip("# \t").partition(":")
@@ -78,9 +79,9 @@ def _declarations(text: str, until: int, where: str) -> dict[str, str]:
             continue
         if key in states:
             raise MeasurementError(f"'{key}' is declared twice", where=f"{where}, line {line}")
-        if key in KEYS:
+        if key in keys:
             states[key] = value.strip()
-        elif near := nearest(key, KEYS):
+        elif near := nearest(key, keys):
             raise MeasurementError(
                 f"nothing is declared by '{key}'",
                 where=f"{where}, line {line}",
