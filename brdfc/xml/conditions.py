@@ -64,7 +64,7 @@ def _code(node: Node | None, codes: dict[str, int]) -> int:
     if node is None:
         return 0
     text = node.text.strip()
-    if text not in codes and not re.fullmatch("[0-9]{1,9}", text):
+    if text not in codes and not re.fullmatch("[0-9]{1,10}", text):
         node.fail(f"'{text}' is not known; one of: {', '.join(codes)}, or a number")
     return codes[text] if text in codes else int(text)
 

@@ -57,7 +57,8 @@ def _type_node(profile: Profile, signature: str, tag: Tag, elements: ElementWrit
 def _named(signature: str) -> Node:
     if signature in TAG_NAMES:
         return Node(TAG_NAMES[signature])
-    return Node(_PRIVATE, {"TagSignature": signature_name(signature_bytes(signature))})
+    name = signature_name(signature_bytes(signature)) or "00000000h"
+    return Node(_PRIVATE, {"TagSignature": name})
 
 
 def _channel_names(profile: Profile, signature: str) -> Names:
@@ -143,10 +144,9 @@ def _read(node: Node, folder: Folder, found: dict[str, Tag]) -> tuple[list[str],
 def _signature(name: str, stated: str | None, node: Node) -> str:
     if name in TAG_SIGNATURES:
         return TAG_SIGNATURES[name]
+    if not stated:
+        node.fail(f"'{name}' needs a signature of four characters")
     try:
-        signature = signature_text_of(stated or "")
+        return signature_text_of(stated)
     except ProfileError as error:
         node.fail(error.message)
-    if not signature:
-        node.fail(f"'{name}' needs a signature of four characters")
-    return signature

@@ -8,6 +8,7 @@ from xml.sax.saxutils import escape
 
 from brdfc.source.errors import ProfileError
 from brdfc.xml.document import SIZE_LIMIT, Node
+from brdfc.xml.names import unfit
 
 COMMENT = "#comment"
 """The tag of a node that is written as a comment."""
@@ -30,7 +31,8 @@ def document_text(root: Node) -> str:
 
 def _lines(node: Node, indent: str) -> Iterator[str]:
     if node.tag == COMMENT:
-        yield f"{indent}<!-- {node.text.replace('--', '- -')} -->\n"
+        text = "".join("?" if unfit(c) else c for c in node.text)
+        yield f"{indent}<!-- {text.replace('--', '- -')} -->\n"
         return
     attributes = "".join(
         f' {name}="{escape(value, _IN_ATTRIBUTE)}"' for name, value in node.attributes.items()

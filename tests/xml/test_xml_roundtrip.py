@@ -228,7 +228,7 @@ TAGS: dict[str, Tag] = {
         observer=77,
         observer_range=SpectralRange(),
         matching=(),
-        illuminant=4000000,
+        illuminant=2**32 - 1,
         temperature=0.0,
         illuminant_range=SpectralRange(0.0, 1.5, 0),
         power=(),
@@ -303,3 +303,12 @@ def test_a_tag_that_cannot_be_written_is_named() -> None:
     with pytest.raises(ProfileError) as caught:
         to_xml(holding(Dictionary((("a\0b", "c"),))))
     assert str(caught.value) == "tag 'tag0': a text with a NUL inside: 'a\\x00b'"
+
+
+def test_a_tag_without_a_signature_and_a_comment_that_xml_cannot_hold() -> None:
+    entries = [("env.1", "a--\x01b"), ("env.1.type", "number"), ("env.1.range", "0..1")]
+    entries += [("env.1.default", "0"), ("env.1.signature", "abcd")]
+    tags: dict[str, Tag] = {"": Pipeline(3, 3, ()), "meta": Dictionary(tuple(entries))}
+    profile = replace(holding(), tags=tags)
+    assert "<!-- env(abcd): a- -?b in 0..1,  -->" in to_xml(profile)
+    same(profile)
