@@ -10,6 +10,7 @@ from brdfc.cli.options import geometry_option, pairs
 from brdfc.cli.search_options import end_progress, search_options, shown_progress
 
 if TYPE_CHECKING:
+    from brdfc.colour.conditions import ViewingConditions
     from brdfc.compiled import Compiled
     from brdfc.sceneplan import Plan
     from brdfc.scenes.scene import Scene
@@ -158,7 +159,9 @@ def command(
     if coefficients is not None:
         from brdfc.fit.result import read_coefficients, with_defaults
 
-        loaded = with_defaults(loaded, read_coefficients(coefficients))
+        found = read_coefficients(coefficients)
+        loaded = with_defaults(loaded, found)
+        _require_white(found.white, conditions, coefficients)
     compiled = compile_model(
         loaded,
         pairs(fixed, "--set"),
@@ -206,6 +209,23 @@ def command(
     )
     for path, _ in files:
         click.echo(f"wrote        {path}")
+
+
+def _require_white(
+    fitted: tuple[float, ...], conditions: ViewingConditions | None, where: str
+) -> None:
+    """FitError where colours were fitted under another light than the profile is for."""
+    from brdfc.colour.difference import D50
+    from brdfc.source.errors import FitError
+
+    white = conditions.white if conditions is not None else D50
+    if max(abs(a - b) for a, b in zip(fitted, white, strict=True)) > 1e-3:
+        shown = ", ".join(f"{v:.4g}" for v in fitted)
+        raise FitError(
+            f"the colours were fitted under the white {shown}, and the profile is for another",
+            where=where,
+            hint="give brdfc fit and brdfc compile the same --illuminant or --white",
+        )
 
 
 def _scene(path: str | None, tolerance: float | None) -> Scene | None:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import math
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     "--set", "fixed", multiple=True, metavar="NAME=VALUE", help="Do not fit this one. Repeatable."
 )
 @click.option("--starts", type=click.IntRange(1, 1000), help="Where to start from. Default: 12.")
-@click.option("--seed", type=int, default=1, help="Of the starts. Default: 1.")
+@click.option("--seed", type=click.IntRange(0), default=1, help="Of the starts. Default: 1.")
 @click.option(
     "--method",
     type=click.Choice(["least-squares", "nelder-mead"]),
@@ -40,8 +41,8 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--bootstrap",
-    type=click.IntRange(0, 10_000),
-    default=0,
+    type=click.IntRange(20, 10_000),
+    default=None,
     metavar="N",
     help="Take the intervals from so many fits to measurements drawn anew.",
 )
@@ -59,7 +60,7 @@ def command(
     starts: int | None,
     seed: int,
     method: str,
-    bootstrap: int,
+    bootstrap: int | None,
     table: str | None,
     patch: str | None,
     mitsuba: str | None,
@@ -98,7 +99,7 @@ def command(
         starts=starts or STARTS,
         seed=seed,
         method=Method(method),
-        bootstrap=bootstrap,
+        bootstrap=bootstrap or 0,
     )
     _show(found)
     if not found.converged:
@@ -110,9 +111,10 @@ def command(
     files = [(output, found.to_toml)] if output else []
     files += [(table, lambda: csv_text(found))] if table else []
     files += [(mitsuba, lambda: mitsuba_text(found))] if mitsuba else []
-    write_all(*((path, text().encode()) for path, text in files))
-    if patch:
+    written = [(path, text().encode()) for path, text in files]
+    if patch:  # the first to fail
         write_patch(found, patch)
+    write_all(*written)
     for path in (output, table, mitsuba, patch):
         if path:
             click.echo(f"{'wrote':<13}{path}")
@@ -147,6 +149,6 @@ def _factors(text: str | None) -> tuple[float, float, float]:
         weights = [float(given.get(name, "1")) for name in names]
     except ValueError:
         weights = [0.0]
-    if unknown or not min(weights) > 0:
+    if unknown or not all(0 < weight < math.inf for weight in weights):
         raise click.UsageError(f"--weights takes lightness=A,chroma=B,hue=C, not '{text}'")
     return 1 / weights[0], 1 / weights[1], 1 / weights[2]

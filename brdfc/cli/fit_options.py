@@ -75,6 +75,7 @@ def ranges_of(texts: Iterable[str]) -> dict[str, tuple[float, float]]:
 
 def fixed_of(model: Model, texts: Iterable[str]) -> dict[str, tuple[float, ...]]:
     """`NAME=VALUE` texts of a model's quantities."""
+    from brdfc.lang.model import Role
     from brdfc.lang.values import parse_value
     from brdfc.source.diagnostics import did_you_mean
     from brdfc.source.errors import ValueGivenError
@@ -86,5 +87,16 @@ def fixed_of(model: Model, texts: Iterable[str]) -> dict[str, tuple[float, ...]]
             known = [q.name for q in model.quantities]
             hint = did_you_mean(name, known) or ", ".join(known)
             raise ValueGivenError(f"'{model.name}' has no '{name}'", hint=hint)
-        found[name] = tuple(parse_value(text, quantity.type, name))
+        values = tuple(parse_value(text, quantity.type, name))
+        if quantity.role is not Role.CHANNEL:
+            raise ValueGivenError(
+                f"'{name}' is no coefficient of '{model.name}'",
+                hint="directions come with the measurements; --set is for channels",
+            )
+        if not all(quantity.low <= value <= quantity.high for value in values):
+            raise ValueGivenError(
+                f"{name}={text} lies outside {quantity.low:g}..{quantity.high:g}",
+                hint=f"--range {name}=LOW..HIGH takes another range",
+            )
+        found[name] = values
     return found

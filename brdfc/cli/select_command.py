@@ -47,6 +47,7 @@ def command(
     from brdfc.files import refuse_same, write_whole
     from brdfc.fit.selection import MODELS, select
     from brdfc.lang.load import load
+    from brdfc.scenes.scene import checked_tolerance
     from brdfc.source.errors import BrdfcError
 
     kind = chart_kind(output) if output else ""
@@ -59,6 +60,10 @@ def command(
     loaded = [load(name, "full") for name in names]
     paths = {model.name: name for model, name in zip(loaded, names, strict=True)}
     measured = seen(data, **said)
+    for remark in measured.remarks:
+        click.echo(f"note: {remark}", err=True)
+    if tolerance is not None:
+        tolerance = checked_tolerance(tolerance, "--tolerance")
     found = select(
         measured,
         loaded,
@@ -91,7 +96,11 @@ def _show(found: Selection) -> None:
             f"  {c.name:<20}{c.parameters:>12}{c.cost:>10.0f}{c.inside:>9.3f}{c.outside:>10.3f}"
             f"{c.seen:>9.4f}{c.error:>8.4f}{c.criterion:>9.0f}{mark}"
         )
-    if found.chosen is None:
+    for name, why in found.left_out.items():
+        click.echo(f"  {name:<20}not fitted: {why}")
+    if found.chosen is None and found.tolerance is None:
+        click.echo("no search converged: none can be chosen")
+    elif found.chosen is None:
         nearest = found.nearest
         click.echo(
             f"none reaches {found.tolerance:g}: the nearest is {nearest.name} with "

@@ -24,10 +24,15 @@ FEWEST_SHARED = 4
 
 def refuse(measured: Measurements, response: Response) -> None:
     """FitError where there is less to go by than there are coefficients."""
-    usable = np.isfinite(measured.values)
+    usable = (measured.values >= 0) & (measured.weights > 0)[:, None]
+    if measured.kind is Kind.XYZ:
+        usable &= usable.all(axis=1, keepdims=True)  # a colour is whole, or none
     if not usable.any():
-        raise FitError("no measurement has a value", where=measured.name)
-    if (measured.directions[:, :2] >= np.pi / 2).all():
+        raise FitError(
+            "no measurement has a value that counts: all are missing, negative or of no weight",
+            where=measured.name,
+        )
+    if (measured.directions[:, :2] >= np.pi / 2 - 1e-6).any(axis=1).all():
         raise FitError("all measurements are at 90 degrees or beyond", where=measured.name)
     geometries = len(np.unique(measured.directions[usable.any(axis=1)].round(6), axis=0))
     least = least_geometries(response)

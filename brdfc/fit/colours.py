@@ -33,6 +33,8 @@ def to_xyz(measurements: Measurements, conditions: ViewingConditions) -> Measure
     Raises MeasurementError where the spectra do not cover 400..700 nm, or have steps wider than
     40 nm.
     """
+    if measurements.kind is Kind.XYZ and _one_white(measurements, conditions):
+        return measurements  # as they are: a missing X is no reason to lose Y
     if measurements.kind is Kind.XYZ:
         matrix, remark = _from_white(measurements, conditions)
     elif measurements.kind is Kind.RGB:
@@ -75,12 +77,15 @@ def _from_spectra(measurements: Measurements, conditions: ViewingConditions) -> 
     return np.asarray(conditions.reflectances_to_xyz(even) @ read)
 
 
+def _one_white(measurements: Measurements, conditions: ViewingConditions) -> bool:
+    white = measurements.white or conditions.white
+    return bool(np.abs(np.subtract(white, conditions.white)).max() < _SAME_WHITE)
+
+
 def _from_white(measurements: Measurements, conditions: ViewingConditions) -> tuple[Array, str]:
     from brdfc.colour.adaptation import adaptation_matrix
 
     white = measurements.white or conditions.white
-    if np.abs(np.subtract(white, conditions.white)).max() < _SAME_WHITE:
-        return np.eye(3), ""
     shown = ", ".join(f"{v:.4g}" for v in white)
     return adaptation_matrix(white, conditions.white), f"adapted from the white {shown} (Bradford)"
 

@@ -64,8 +64,11 @@ def require_mitsuba(model: str) -> None:
 
 
 def mitsuba_text(fit: Fit) -> str:
-    """The material as a dictionary of Mitsuba 3, in JSON; FitError where it has no such model."""
+    """The material as a dictionary of Mitsuba 3, in JSON; FitError where it has no such model, and
+    for coefficients that are no X, Y, Z."""
     require_mitsuba(fit.model)
+    if fit.kind != "XYZ":
+        raise FitError(f"coefficients of {fit.kind} values are no X, Y, Z")
     return json.dumps(MITSUBA[fit.model](fit.values, fit.white), indent=2) + "\n"
 
 

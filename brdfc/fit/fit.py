@@ -23,6 +23,9 @@ Array = NDArray[np.float64]
 
 Factors = tuple[float, float, float]
 
+POOR = 10.0
+"""A mean CIEDE2000 beyond which something else than the coefficients is wrong."""
+
 
 def fit(
     model: Model,
@@ -49,13 +52,26 @@ def fit(
     found = search(response, measured, objective, factors, starts, seed, method)
     scaling = Scaling(response)
     place = scaling.places(found.coefficients)
-    spread = spread_of(losses_of(response, measured, objective, factors), place)
+    losses = losses_of(response, measured, objective, factors)
+    usual = float(np.median(losses(place)))
+    spread = spread_of(
+        losses,
+        place,
+        rounded=lambda x: np.hypot(losses(x), usual) if objective == COLOUR else losses(x),
+        slopes=exact_slopes(response, measured, found.coefficients, scaling),
+    )
     # Two objectives that should agree: by how much they do not is a bias of one of them, and adds
     # to the chance of the measurements as one independent error to another.
     apart = place - scaling.places(found.before)
     low = scaling.values(place - np.hypot(place - spread.low, apart))
     high = scaling.values(place + np.hypot(spread.high - place, apart))
+    differences, by_incidence = _differences(response, measured, found)
     remarks = [*measured.remarks, *checks.before(measured), *checks.after(response, spread)]
+    if differences is not None and differences[0] > POOR:
+        remarks.append(
+            f"a mean CIEDE2000 of {differences[0]:.3g} is no fit: check the unit, the angles and "
+            "their signs (--unit, --angles, --mirror), or take another model"
+        )
     if not found.converged:
         remarks.insert(0, "the search did not converge: do not use these coefficients")
     elif found.starts > 1 and found.agreed == 1:
@@ -72,12 +88,14 @@ def fit(
         found.starts,
         found.agreed,
         len(measured.directions),
-        response.white,
+        measured.white or NO_WHITE,
+        measured.kind.value,
         tuple(
             Estimate(c.name, float(v), float(a), float(b))
             for c, v, a, b in zip(response.coefficients, found.coefficients, low, high, strict=True)
         ),
-        *_differences(response, measured, found),
+        differences,
+        by_incidence,
         tuple(remarks),
         {name: tuple(values) for name, values in fixed.items()},
         tuple(tuple(map(float, row)) for row in spread.correlation),
@@ -90,8 +108,10 @@ def response_to(
     measured: Measurements,
     fixed: Mapping[str, Sequence[float]] = {},
 ) -> Response:
-    """A model's reflectance where it was measured, under the white of the measurements."""
-    return Response(model, measured.directions, fixed, measured.white or NO_WHITE)
+    """A model's reflectance where it was measured, under the white of the measurements; a model
+    whose highlight adds the same to all components has none."""
+    white = NO_WHITE if model.highlight == "equal" else measured.white or NO_WHITE
+    return Response(model, measured.directions, fixed, white)
 
 
 def in_ranges(model: Model, ranges: Mapping[str, tuple[float, float]]) -> Model:
@@ -108,6 +128,15 @@ def in_ranges(model: Model, ranges: Mapping[str, tuple[float, float]]) -> Model:
             q = replace(q, low=low, high=high, default=inside)
         quantities.append(q)
     return replace(model, quantities=tuple(quantities))
+
+
+def exact_slopes(
+    response: Response, measured: Measurements, values: Array, scaling: Scaling
+) -> Array:
+    """(values, p): how what is seen changes with each place, by the formula's derivatives."""
+    differences = Differences(measured, scale_named("cube-root"))
+    found, slopes = response.slopes(values)
+    return differences.by_slopes(found, slopes * scaling.slopes(values))
 
 
 def losses_of(

@@ -28,7 +28,7 @@ STARTS = 12
 AGREED = 0.01
 """A start has come to the best one where its sum of squares is larger by this share at most."""
 MOST_STEPS = 200
-POLISH_STEPS = 3000
+POLISH_STEPS, MOST_POLISHES, STILL = 3000, 5, 1e-4
 
 
 class Method(Enum):
@@ -179,6 +179,12 @@ def _least_squares(
         return Found(values, values, root, bool(best.success), len(places), agreed)
     loss = _of_colours(response, colours, scaling)
     polished = _simplex(loss, best.x)
+    for _ in range(MOST_POLISHES):  # a simplex that has collapsed stops short
+        again = _simplex(loss, polished.x)
+        gained = float(polished.fun - again.fun)
+        polished = again if gained > 0 else polished
+        if gained < STILL * float(polished.fun) + 1e-9:
+            break
     return Found(
         scaling.values(polished.x),
         values,

@@ -70,7 +70,7 @@ class Response:
         reflectance = make("div", exact, make("cos", quantity(INCIDENT, 1)))
         read = {e.name for e in walk(reflectance) if e.operator == "quantity"}
         wanted = [
-            (q.under(white), index)
+            (q, index)
             for q in model.quantities
             if q.role is Role.CHANNEL and q.name in read
             for index in range(q.type.value.width)
@@ -80,21 +80,22 @@ class Response:
         slopes = [derivative(reflectance, q.name, index) for q, index in wanted]
         linear = _linear([q.name for q, _ in wanted], slopes)
         self.model, self.white, self.reflectance = model, tuple(white), reflectance
+        # A colour's component is that share of the white's, which the model declares the range of.
+        share = [white[index] if q.type.is_colour else 1.0 for q, index in wanted]
         self.coefficients = tuple(
             Coefficient(
                 q.component_names[index],
                 q.name,
                 index,
-                q.low,
-                q.high,
-                q.default[index],
+                q.low * part,
+                q.high * part,
+                q.default[index] * part,
                 q.name in linear,
                 q.name not in linear and q.low > 0 and q.high / q.low >= DECADES,
             )
-            for q, index in wanted
+            for (q, index), part in zip(wanted, share, strict=True)
         )
         self.width = reflectance.width
-        self._widths = {q.name: q.type.value.width for q, _ in wanted}
         points = {name: directions[:, k : k + 1] for k, name in enumerate(ANGLES)}
         self.count = len(directions)
         self._values = Evaluation([reflectance], points)

@@ -51,6 +51,7 @@ class Fit:
     agreed: int
     measurements: int
     white: tuple[float, ...]
+    kind: str
     estimates: tuple[Estimate, ...]
     difference: tuple[float, float, float] | None
     by_incidence: tuple[tuple[float, float, int], ...]
@@ -70,7 +71,7 @@ class Fit:
     def _lines(self) -> Iterator[str]:
         yield "# coefficients of a reflectance model, fitted to measurements"
         yield f"format = {FORMAT}"
-        for name in ("model", "data", "objective", "method"):
+        for name in ("model", "data", "kind", "objective", "method"):
             yield f"{name} = {json.dumps(getattr(self, name), ensure_ascii=False)}"
         yield f"converged = {str(self.converged).lower()}"
         yield f"loss = {_number(self.loss)}"
@@ -107,10 +108,11 @@ def _list(values: Sequence[float]) -> str:
 
 @dataclass(frozen=True)
 class Coefficients:
-    """values: by the names of channels. white: that colours among them are relative to. where: the
-    file they are from."""
+    """values: by the names of channels. white: that colours among them are relative to; kind: of
+    the colours, XYZ or else. where: the file they are from."""
 
     model: str
+    kind: str
     values: Mapping[str, float]
     white: tuple[float, ...]
     where: str
@@ -129,7 +131,7 @@ def read_coefficients(path: str | Path) -> Coefficients:
         for quantity, numbers in dict(read.get("fixed", {})).items():
             values |= _components(str(quantity), [float(v) for v in numbers])
         white = tuple(float(v) for v in read["white"])
-        name, converged = str(read["model"]), read.get("converged")
+        name, kind, converged = str(read["model"]), str(read["kind"]), read.get("converged")
     except (KeyError, TypeError, ValueError) as error:
         raise FitError(
             f"no coefficients: {error}", where=str(path), hint="write them with brdfc fit -o"
@@ -138,7 +140,7 @@ def read_coefficients(path: str | Path) -> Coefficients:
         raise FitError("a coefficient, or the white, is no finite number", where=str(path))
     if converged is not True:
         raise FitError("the fit did not converge", where=str(path), hint="fit it anew")
-    return Coefficients(name, values, white, str(path))
+    return Coefficients(name, kind, values, white, str(path))
 
 
 def _components(quantity: str, numbers: Sequence[float]) -> dict[str, float]:
@@ -149,8 +151,20 @@ def _components(quantity: str, numbers: Sequence[float]) -> dict[str, float]:
 def with_defaults(model: Model, found: Coefficients) -> Model:
     """A model whose channels have these values where a profile finds none in an image.
 
-    Raises FitError for coefficients that the model does not have, or that lie outside its ranges.
+    Raises FitError for coefficients of another model, of another kind of colours than X, Y, Z, or
+    outside the model's ranges.
     """
+    if found.model != model.name:
+        raise FitError(
+            f"the coefficients were fitted with '{found.model}', not '{model.name}'",
+            where=found.where,
+        )
+    if found.kind != "XYZ":
+        raise FitError(
+            f"coefficients of {found.kind} values are no X, Y, Z",
+            where=found.where,
+            hint="fit them without --objective, which makes X, Y, Z of them",
+        )
     left = dict(found.values)
     quantities = []
     for q in model.quantities:
@@ -170,9 +184,5 @@ def with_defaults(model: Model, found: Coefficients) -> Model:
             q = replace(q, default=inside)
         quantities.append(q)
     if left:
-        raise FitError(
-            f"'{model.name}' has no {', '.join(left)}",
-            where=found.where,
-            hint=f"they were fitted with '{found.model}'",
-        )
+        raise FitError(f"'{model.name}' has no {', '.join(left)}", where=found.where)
     return replace(model, quantities=tuple(quantities))

@@ -22,7 +22,7 @@ from brdfc.fit.measurements import Kind, Measurements
 from brdfc.fit.objectives import SCALES, ColourDifferences, Differences
 from brdfc.fit.result import Fit
 from brdfc.lang.model import Model
-from brdfc.source.errors import FitError
+from brdfc.source.errors import FitError, ValueGivenError
 
 Array = NDArray[np.float64]
 Groups = Sequence[NDArray[np.bool_]]
@@ -32,6 +32,8 @@ MODELS = (
     *("ashikhmin_shirley", "cook_torrance", "ggx", "abc_microfacet", "cook_torrance_2"),
 )
 """Of the library: those that measurements of one isotropic material can be asked about."""
+LEAST = 1e-4
+"""On the cube root's scale: less cannot be seen, nor measured."""
 FOLDS = 10
 """Groups of incidences, at most."""
 SCALE = SCALES["cube-root"]
@@ -64,11 +66,13 @@ class Candidate:
 @dataclass(frozen=True)
 class Selection:
     """candidates: best held out first. chosen: the smallest that the measurements support, or whose
-    difference keeps to the tolerance; None where none does."""
+    difference keeps to the tolerance; None where none does. left_out: models that cannot be fitted
+    to so little, and why."""
 
     candidates: tuple[Candidate, ...]
     chosen: Candidate | None
     tolerance: float | None
+    left_out: Mapping[str, str]
 
     @property
     def nearest(self) -> Candidate:
@@ -93,23 +97,34 @@ def select(
     if measured.kind is not Kind.XYZ:
         raise FitError("models are chosen by colour differences", hint="give a light to spectra")
     groups = folds(measured)
-    found = []
+    unknown = [n for n in ranges if all(model.quantity(n) is None for model in models)]
+    if unknown:
+        raise ValueGivenError(f"no model here has a quantity '{unknown[0]}'")
+    found, left_out = [], {}
     for model in models:
         progress(model.name)
         here = {n: r for n, r in ranges.items() if model.quantity(n) is not None}
-        found.append(_candidate(measured, in_ranges(model, here), cost(model.name), groups))
+        try:
+            found.append(_candidate(measured, in_ranges(model, here), cost(model.name), groups))
+        except FitError as error:
+            left_out[model.name] = error.message
+    if not found:
+        raise FitError(f"no model can be fitted: {next(iter(left_out.values()))}")
     found.sort(key=lambda c: c.seen)
-    return Selection(tuple(found), chosen(found, tolerance), tolerance)
+    return Selection(tuple(found), chosen(found, tolerance), tolerance, left_out)
 
 
 def chosen(candidates: Sequence[Candidate], tolerance: float | None) -> Candidate | None:
     """The one with the fewest coefficients, then the cheapest, of those within one standard error
     of the best; of those that keep to a tolerance where one is given."""
-    best = min(candidates, key=lambda c: c.seen)
+    sound = [c for c in candidates if c.fit.converged]
+    if not sound:
+        return None
+    best = min(sound, key=lambda c: c.seen)
     if tolerance is None:
-        enough = [c for c in candidates if c.seen <= best.seen + best.error]
+        enough = [c for c in sound if c.seen <= best.seen + best.error + LEAST]
     else:
-        enough = [c for c in candidates if c.outside <= tolerance]
+        enough = [c for c in sound if c.outside <= tolerance]
     return min(enough, key=lambda c: (c.parameters, c.cost), default=None)
 
 
@@ -135,12 +150,12 @@ def _candidate(measured: Measurements, model: Model, cost: float, groups: Groups
         rest, held = measured.selected(~group), measured.selected(group)
         elsewhere, there = response_to(model, rest), response_to(model, held)
         found = search(elsewhere, rest, "cube-root", begun=near)
-        residuals = Differences(held, SCALE).residuals(there.values(found.coefficients))
-        seen.append(np.sqrt(np.mean(residuals**2)))
+        seen.append(_root_mean_square(Differences(held, SCALE), there.values(found.coefficients)))
         polished = search(elsewhere, rest, begun=found.coefficients).coefficients
         each.append(ColourDifferences(held).each(there.values(polished)))
-    residuals = Differences(measured, SCALE).residuals(response.values(near))
-    count = len(residuals)
+    whole_scale = Differences(measured, SCALE)
+    count = max(1, int(whole_scale.valid.sum()))
+    square = max(_root_mean_square(whole_scale, response.values(near)) ** 2, 1e-300)
     assert whole.difference is not None
     return Candidate(
         whole,
@@ -149,5 +164,11 @@ def _candidate(measured: Measurements, model: Model, cost: float, groups: Groups
         float(np.concatenate(each).mean()),
         float(np.mean(seen)),
         float(np.std(seen, ddof=1) / np.sqrt(len(seen))),
-        float(count * np.log(residuals @ residuals / count) + len(near) * np.log(count)),
+        float(count * np.log(square) + len(near) * np.log(count)),
     )
+
+
+def _root_mean_square(differences: Differences, values: Array) -> float:
+    """Of what counts."""
+    residuals = differences.residuals(values)
+    return float(np.sqrt(residuals @ residuals / max(1, int(differences.valid.sum()))))

@@ -21,6 +21,8 @@ Losses = Callable[[Array], Array]
 
 NORMAL = 1.959963985
 """Standard deviations to either side that 95 % lie within."""
+FLAT = 1e-7
+"""Share of the largest singular value that counts as nothing."""
 AT_END = 1e-3
 """Share of its range within which a coefficient is at an end of it."""
 WIDE = 0.5
@@ -44,25 +46,32 @@ class Spread:
     undetermined: NDArray[np.bool_]
 
 
-def spread_of(losses: Losses, x: Array) -> Spread:
-    """The spread of an estimate x in 0..1 that makes the sum of losses small."""
-    at_end = np.where(x < AT_END, -1, np.where(x > 1 - AT_END, 1, 0))
+def spread_of(losses: Losses, x: Array, rounded: Losses, slopes: Array) -> Spread:
+    """The spread of an estimate x in 0..1 that makes the sum of losses small.
+
+    rounded: the same losses without a kink at 0, which their curvature is taken of: a colour
+    difference is like an absolute value. slopes: (m, p), how what is seen changes with x, exactly;
+    directions in which it does not are found by them.
+    """
+    estimate = x
+    at_end = _ends(losses, x)
     x = np.where(at_end < 0, 0.0, np.where(at_end > 0, 1.0, x))
     silent = _silent(losses, x)
     at_end[silent] = 0
     free = np.flatnonzero((at_end == 0) & ~silent)
-    slopes, curvatures = _slopes(losses, x, free), _curvatures(losses, x, free)
+    flat_by_slopes = _flat(slopes[:, free])
+    scores, curvatures = _slopes(losses, x, free), _curvatures(rounded, x, free)
     curvature = curvatures.sum(axis=0)
     # Directions that the loss does not change in have no finite spread.
     values, vectors = np.linalg.eigh(curvature)
     largest = max(float(values.max(initial=0.0)), 1e-300)
     flat = values < 1e-9 * largest
     inverse = vectors * np.where(flat, 0.0, 1 / np.where(flat, 1.0, values)) @ vectors.T
-    slopes = _without_itself(slopes, curvatures, inverse)
-    covariance = inverse @ (slopes.T @ slopes) @ inverse
+    scores = _without_itself(scores, curvatures, inverse)
+    covariance = inverse @ (scores.T @ scores) @ inverse
     deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    blind = (np.abs(vectors[:, flat]) > 0.1).any(axis=1)
-    low, high = x.copy(), x.copy()
+    blind = (np.abs(vectors[:, flat]) > 0.1).any(axis=1) | flat_by_slopes
+    low, high = np.minimum(x, estimate), np.maximum(x, estimate)
     low[free] -= np.where(blind, 1.0, NORMAL * deviation)
     high[free] += np.where(blind, 1.0, NORMAL * deviation)
     correlation = np.zeros((len(x), len(x)))
@@ -72,6 +81,32 @@ def spread_of(losses: Losses, x: Array) -> Spread:
     undetermined[free] |= blind | (NORMAL * deviation > WIDE)
     low[silent], high[silent] = 0.0, 1.0
     return Spread(np.clip(low, 0, 1), np.clip(high, 0, 1), correlation, at_end, undetermined)
+
+
+def _ends(losses: Losses, x: Array) -> NDArray[np.int_]:
+    """(p,): -1 or 1 where x is within AT_END of an end of the range that is as good: the loss is
+    larger there by no more than chance makes it."""
+    each = losses(x)
+    here, chance = float(each.sum()), 2 * float(each.mean())
+    found = np.zeros(len(x), int)
+    for place in range(len(x)):
+        side = -1 if x[place] < 0.5 else 1
+        end = 0.0 if side < 0 else 1.0
+        if abs(x[place] - end) < AT_END:
+            there = float(losses(_moved(x, place, end - x[place])).sum())
+            if there <= here + chance:
+                found[place] = side
+    return found
+
+
+def _flat(slopes: Array) -> NDArray[np.bool_]:
+    """(p,): which take part in a direction that changes nothing."""
+    if not slopes.shape[1]:
+        return np.zeros(0, bool)
+    size = np.linalg.norm(slopes, axis=0)
+    _, values, vectors = np.linalg.svd(slopes / np.where(size > 0, size, 1.0), full_matrices=False)
+    nothing = vectors[values < FLAT * values[0]]
+    return np.asarray((np.abs(nothing) > 0.1).any(axis=0) | (size == 0))
 
 
 def _silent(losses: Losses, x: Array) -> NDArray[np.bool_]:

@@ -100,7 +100,7 @@ def test_a_fit_of_another_model_is_not_compiled(folder: Path) -> None:
     run("fit", "ward.csv", "--model", "ward", "-o", "o.toml", cwd=folder)
     done = run("compile", "lambert", "--coefficients", "o.toml", "-o", "l_mvis.icc", cwd=folder)
     assert done.returncode == 1
-    assert "'lambert' has no ks, m" in done.stderr
+    assert "fitted with 'ward', not 'lambert'" in done.stderr
     assert not (folder / "l_mvis.icc").exists()
 
 

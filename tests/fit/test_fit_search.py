@@ -241,7 +241,7 @@ def test_a_file_is_read_back(tmp_path: Path) -> None:
     assert quantity is not None
     shares = [v / w for v, w in zip(TRUTH["ward"], read.white, strict=False)]
     assert quantity.default == pytest.approx(shares, rel=1e-3)
-    with pytest.raises(FitError, match="'lambert' has no ks, m"):
+    with pytest.raises(FitError, match="fitted with 'ward', not 'lambert'"):
         with_defaults(load("lambert"), read)
     with pytest.raises(FitError, match=r"ks = 1.5 lies outside 0\.\.1, which 'ward' declares"):
         with_defaults(load("ward"), replace(read, values={**read.values, "ks": 1.5}))
