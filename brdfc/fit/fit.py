@@ -24,8 +24,8 @@ Array = NDArray[np.float64]
 Factors = tuple[float, float, float]
 
 KINK = 0.4
-"""Share of the usual difference that the kink of a difference at 0 is rounded by, for its curvature:
-less and correlated noise is not seen, more and all intervals are too wide."""
+"""Share of the usual difference that the kink of a difference at 0 is rounded by, for its
+curvature: less, and correlated noise is not seen; more, and all intervals are too wide."""
 POOR = 10.0
 """A mean CIEDE2000 beyond which something else than the coefficients is wrong."""
 
