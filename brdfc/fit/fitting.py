@@ -28,7 +28,7 @@ STARTS = 12
 AGREED = 0.01
 """A start has come to the best one where its sum of squares is larger by this share at most."""
 MOST_STEPS = 200
-POLISH_STEPS, MOST_POLISHES, STILL = 3000, 5, 1e-4
+POLISH_STEPS, MOST_POLISHES, STILL = 3000, 3, 1e-3
 
 
 class Method(Enum):

@@ -150,7 +150,8 @@ def test_converged_is_where_nothing_near_is_better() -> None:
 
 def test_coefficients_at_the_ends_of_their_ranges() -> None:
     """Dark, white and matte pixels: still within, and said to be fitted."""
-    truth = np.array([[0, 0, 0, 0.05, 0.2], [1, 1, 1, 0.0, 0.2], [0.5, 0, 1, 0.3, 1.0]])
+    x, y, z = D50  # what a diffuser that reflects all has
+    truth = np.array([[0, 0, 0, 0.05, 0.2], [x, y, z, 0.0, 0.2], [x / 2, 0, z, 0.3, 1.0]])
     found = fit_of("ward")(reflected("ward", truth))
     assert found.converged.all()
     np.testing.assert_allclose(found.coefficients[:, :4], truth[:, :4], atol=1e-4)
