@@ -105,10 +105,7 @@ def _missing(measured: Measurements) -> Iterator[str]:
     gone = np.isnan(measured.values)
     columns = np.flatnonzero(gone.all(axis=0))
     if len(columns):
-        named = ", ".join(
-            f"{measured.wavelengths[c]:g} nm" if measured.kind is Kind.SPECTRAL else "XYZRGB"[c]
-            for c in columns
-        )
+        named = ", ".join(measured.components[c] for c in columns)
         yield f"no values for {named}"
     elif gone.any():
         yield f"{int(gone.any(axis=1).sum())} measurements miss some of their values"

@@ -31,7 +31,6 @@ class Scale:
     seen: Callable[[Array], Array]
     slope: Callable[[Array], Array]
     weight: Callable[[Array], Array]
-    citation: str
 
 
 def _cube_root(x: Array) -> Array:
@@ -48,23 +47,22 @@ def _solid(directions: Array) -> Array:
 
 
 SCALES: dict[str, Scale] = {
+    # A. Fores, J. Ferwerda, J. Gu, Color and Imaging Conference 20, 2012
     "cube-root": Scale(
         _cube_root,
         lambda x: np.maximum(x, LEAST) ** (-2 / 3) / 3,
         _even,
-        "A. Fores, J. Ferwerda, J. Gu, Color and Imaging Conference 20, 2012",
     ),
+    # This and the next: J. Low, J. Kronander, A. Ynnerman, J. Unger, ACM TOG 31(1), 2012
     "log": Scale(
         lambda x: np.log1p(np.maximum(x, 0)),
         lambda x: 1 / (1 + np.maximum(x, 0)),
         _solid,
-        "J. Low, J. Kronander, A. Ynnerman, J. Unger, ACM Transactions on Graphics 31(1), 2012",
     ),
     "l2": Scale(
         lambda x: x,
         np.ones_like,
         _solid,
-        "J. Low, J. Kronander, A. Ynnerman, J. Unger, ACM Transactions on Graphics 31(1), 2012",
     ),
 }
 """Scales of differences, by the names that --objective takes."""

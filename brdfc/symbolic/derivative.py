@@ -30,7 +30,6 @@ _SMOOTH = (
     *("add", "sub", "mul", "div", "pow", "atan2"),
 )
 """Operators that SymPy is asked about."""
-_STEPS = ("sign", "floor", "ceil", "trunc", "round")
 
 
 def derivative(expression: Expression, name: str, index: int | None = None) -> Expression:

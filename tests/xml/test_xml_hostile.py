@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import subprocess
 import sys
 import time
@@ -23,15 +24,18 @@ from brdfc.source.errors import BrdfcError
 from brdfc.xml.document import SIZE_LIMIT
 from brdfc.xml.profile import to_xml
 
-SECONDS = 3.0
+SECONDS = 1.0
 MEGABYTES = 200
 
 
 def refused(data: bytes) -> str:
+    gc.freeze()  # what the other tests have left is not walked over again while this is read
     started = time.process_time()
     with pytest.raises(BrdfcError) as caught:
         read(data)
-    assert time.process_time() - started < SECONDS
+    took = time.process_time() - started
+    gc.unfreeze()
+    assert took < SECONDS
     message = str(caught.value)
     assert len(message) < 2000
     return message
