@@ -10,7 +10,8 @@ import numpy as np
 
 from brdfc.checker import ERROR, OK, OPEN, Finding
 from brdfc.cmm.link import connect_alone
-from brdfc.cmm.rendering import profile_white, spectral_grid
+from brdfc.cmm.rendering import spectral_grid
+from brdfc.profiles.conditions import profile_white
 from brdfc.colours import colours_of
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import Dictionary

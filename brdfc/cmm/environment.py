@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from brdfc.cmm.transforms import transform_variables
+from brdfc.cmm.stages import Stage
 from brdfc.icc.profile import Profile
 from brdfc.lang.types import TYPES
 from brdfc.lang.values import parse_value
@@ -17,30 +17,36 @@ from brdfc.source.errors import ValueGivenError
 
 
 def environment_of(
-    profile: Profile, transform: str, given: Mapping[str, float], extrapolate: bool = False
+    stages: Sequence[Stage], given: Mapping[str, float], extrapolate: bool = False
 ) -> dict[str, float]:
-    """Values by signature for a run of a profile; by name or signature in what is given.
+    """Values by signature for a run of some profiles; by name or signature in what is given.
 
-    What the profile was compiled for, a variable fixed then or one that changes nothing within its
-    range, may be given too, and is only checked. extrapolate: take values outside the ranges that
-    the profile states. Raises ValueGivenError.
+    A variable that several of them read has one value. What a profile was compiled for, a variable
+    fixed then or one that changes nothing within its range, may be given too, and is only checked.
+    extrapolate: take values outside the ranges that the profiles state. Raises ValueGivenError.
     """
-    known = transform_variables(profile, transform)
-    by_name = {name: (s, d) for s, d in known for name in ((s, d.name) if d else (s,))}
-    environment = {}
+    by_name: dict[str, list[tuple[str, Described | None]]] = {}
+    listed: dict[str, None] = {}
+    for signature, described in (v for stage in stages for v in stage.variables):
+        for name in {signature, described.name} if described else {signature}:
+            by_name.setdefault(name, []).append((signature, described))
+        listed[described.name if described else signature] = None
+    environment: dict[str, float] = {}
+    by: dict[str, str] = {}
     for name, value in given.items():
         if name not in by_name:
-            if _settled(profile, name, value, extrapolate):
+            profiles = {id(stage.profile): stage.profile for stage in stages}
+            if any([_settled(p, name, value, extrapolate) for p in profiles.values()]):
                 continue
-            listed = ", ".join(d.name if d else s for s, d in known) or "none"
             raise ValueGivenError(
                 f"the profile has no variable '{name}'",
-                hint=did_you_mean(name, by_name) or f"its variables: {listed}",
+                hint=did_you_mean(name, by_name)
+                or f"its variables: {', '.join(listed) or 'none'}",
             )
-        signature, described = by_name[name]
-        if signature in environment:
-            raise ValueGivenError(f"'{name}' is given twice, by name and by signature")
-        environment[signature] = _in_range(name, value, described, extrapolate)
+        for signature, described in by_name[name]:
+            if by.setdefault(signature, name) != name:
+                raise ValueGivenError(f"'{name}' is given twice, by name and by signature")
+            environment[signature] = _in_range(name, value, described, extrapolate)
     return environment
 
 

@@ -27,10 +27,9 @@ from brdfc.colour.conditions import (
 from brdfc.colour.difference import D50, lab
 from brdfc.colour.picture import srgb
 from brdfc.colour.spectrum import Grid
-from brdfc.icc.header import D50 as HEADER_D50
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import Pipeline
-from brdfc.profiles.conditions import stated_conditions
+from brdfc.profiles.conditions import profile_white, stated_conditions
 from brdfc.source.diagnostics import did_you_mean
 from brdfc.source.errors import LinkError, ValueGivenError
 
@@ -175,19 +174,6 @@ def seen_conditions(
         return None
     stated = stated_conditions(link.profile) or viewing_conditions()
     return stated.seen_with(light, observed_by)
-
-
-def profile_white(profile: Profile) -> XYZ:
-    """The white of a profile's XYZ: of its viewing conditions, or of its header."""
-    stated = stated_conditions(profile)
-    if stated is not None:
-        return stated.white
-    white = profile.header.illuminant
-    if white == HEADER_D50:
-        return D50
-    if not min(white) > 0:
-        raise LinkError(f"the profile's illuminant is {white}: no light has that")
-    return white
 
 
 def spectral_grid(profile: Profile) -> Grid:

@@ -1,36 +1,27 @@
-"""Transforms of a profile: found, checked, and run on samples."""
+"""Transforms of a profile: checked, and what they read."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-from brdfc.calc.program import Program
+from brdfc.calc.program import Element, Program
 from brdfc.calc.verify import verify
-from brdfc.engine.runs import run
+from brdfc.icc.luts import StagedLut, TableLut
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import NO_SPACE
 from brdfc.icc.types import Pipeline
 from brdfc.profiles.metadata import Described, describe
 from brdfc.source.errors import LinkError, ProgramError
 
-Values = NDArray[np.float32]
-
-COLORIMETRIC = ("A2B", "D2B", "M2B", "bAB")
-"""How the tags begin that lead to X, Y, Z."""
-DEVICE_TRANSFORMS = ("A2B1", "A2B0", "A2B3")
-"""Of a profile of device values the first of these: its colours are media-relative."""
+Transform = Pipeline | TableLut | StagedLut
+Variables = tuple[tuple[str, Described | None], ...]
+"""Variables by signature, each with its description if it has one."""
 
 
-def pipeline(profile: Profile, signature: str) -> Pipeline:
-    """A transform of a profile, whose elements fit each other; LinkError where there is none."""
-    tag = profile.tags.get(signature)
+def check_fit(tag: Transform, signature: str) -> None:
+    """LinkError unless the elements of a transform fit each other's channels."""
     if not isinstance(tag, Pipeline):
-        spectral = "compile the model with --spectral 400nm..700nm,10nm"
-        hint = spectral if signature.startswith(("M2S", "D2B")) else None
-        raise LinkError(f"the profile has no '{signature}' transform", hint=hint)
+        return
     channels = tag.inputs
     for element in tag.elements:
         if element.inputs != channels:
@@ -38,29 +29,6 @@ def pipeline(profile: Profile, signature: str) -> Pipeline:
         channels = element.outputs
     if channels != tag.outputs:
         raise LinkError(f"the elements of '{signature}' do not fit its {tag.outputs} outputs")
-    return tag
-
-
-def run_pipeline(
-    transform: Pipeline, pixels: ArrayLike, environment: Mapping[str, ArrayLike]
-) -> Values:
-    """The elements of a transform; see engine.runs.run."""
-    return run(transform.elements, transform.inputs, pixels, environment)
-
-
-def device_transform(profile: Profile) -> str:
-    """The tag of a profile of device values that leads to colours."""
-    kind = profile.header.device_class
-    if kind in ("mid ", "mvis"):
-        other = "an MVIS" if kind == "mid " else "a MID"
-        raise LinkError(f"one profile, and it needs {other}", hint="give the MID, then the MVIS")
-    found = next((t for t in DEVICE_TRANSFORMS if isinstance(profile.tags.get(t), Pipeline)), None)
-    if found is None:
-        raise LinkError(
-            f"the profile (class '{kind}') has no transform to colours that can be run",
-            hint=f"one of {', '.join(DEVICE_TRANSFORMS)} with processing elements is needed",
-        )
-    return found
 
 
 def leads_to_reflectances(profile: Profile, transform: str) -> bool:
@@ -69,26 +37,14 @@ def leads_to_reflectances(profile: Profile, transform: str) -> bool:
     return kind in ("M2S", "bDB") or (kind == "D2B" and profile.header.spectral_pcs != NO_SPACE)
 
 
-def check_colours(profile: Profile, transform: str, outputs: int) -> None:
-    """LinkError unless a transform leads to what can be rendered: reflectances, or X, Y, Z."""
-    if leads_to_reflectances(profile, transform):
-        return
-    if not transform.startswith(COLORIMETRIC):
-        raise LinkError(
-            f"'{transform}' does not lead to colours", hint=f"{', '.join(COLORIMETRIC)}..."
-        )
-    space = profile.header.pcs.decode("ascii", "replace").strip()
-    if (space, outputs) != ("XYZ", 3):
-        raise LinkError(f"'{transform}' leads to {outputs} values of '{space}', not to X, Y, Z")
+def variables_of(profile: Profile, elements: Iterable[Element]) -> Variables:
+    """The variables that the programs among a profile's elements read.
 
-
-def transform_variables(
-    profile: Profile, transform: str
-) -> tuple[tuple[str, Described | None], ...]:
-    """The variables a transform reads: signature, and its description if it has one."""
+    Raises LinkError for a program that is refused.
+    """
     described = {d.signature: d for d in describe(profile, "env")}
     signatures: dict[str, None] = {}
-    for element in pipeline(profile, transform).elements:
+    for element in elements:
         if isinstance(element, Program):
             try:
                 signatures |= dict.fromkeys(verify(element).variables)

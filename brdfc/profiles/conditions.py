@@ -135,3 +135,16 @@ def stated_conditions(profile: Profile) -> ViewingConditions | None:
         luminance=y,
         surround=tag.surround,
     )
+
+
+def profile_white(profile: Profile) -> XYZ:
+    """The white of a profile's XYZ: of its viewing conditions, or of its header."""
+    stated = stated_conditions(profile)
+    if stated is not None:
+        return stated.white
+    white = profile.header.illuminant
+    if white == D50:
+        return STANDARD_WHITE
+    if not min(white) > 0:
+        raise LinkError(f"the profile's illuminant is {white}: no light has that")
+    return white
