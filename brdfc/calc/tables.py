@@ -39,7 +39,7 @@ class LookupTable:
 
 def encode_table(table: LookupTable) -> bytes:
     """The element from its own signature on."""
-    _check_grid(table.inputs, table.outputs, table.grid, "a lookup table")
+    check_grid(table.inputs, table.outputs, table.grid, "a lookup table")
     needed = math.prod(table.grid) * table.outputs
     if table.samples.count != needed:
         raise ProgramError(f"a lookup table needs {needed} numbers, not {table.samples.count}")
@@ -61,13 +61,14 @@ def decode_table(data: bytes, inputs: int, outputs: int, where: str) -> LookupTa
     code = struct.unpack_from(">H", data, 12)[0] if extended else Storage.FLOAT32.code
     storage = Storage.of_code(code, where)
     grid = tuple(data[start : start + min(inputs, GRID_BYTES)])
-    _check_grid(inputs, outputs, grid, where)
+    check_grid(inputs, outputs, grid, where)
     count = math.prod(grid) * outputs
     samples = Samples.read(storage, count, data, start + GRID_BYTES, where)
     return LookupTable(inputs, outputs, grid, samples, extended)
 
 
-def _check_grid(inputs: int, outputs: int, grid: tuple[int, ...], where: str) -> None:
+def check_grid(inputs: int, outputs: int, grid: tuple[int, ...], where: str) -> None:
+    """Refuse what no table can have: ProgramError."""
     if not 1 <= inputs <= MAX_INPUTS or outputs < 1:
         raise ProgramError(
             f"a lookup table has 1 to {MAX_INPUTS} inputs and 1 output or more, not {inputs} and "

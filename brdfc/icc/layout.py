@@ -8,10 +8,11 @@ kilobytes of overlapping places could stand for gigabytes.
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
-from brdfc.source.errors import ProfileError
+from brdfc.source.errors import ProfileError, ProgramError
 
 Part = TypeVar("Part")
 Place = tuple[int, int]
@@ -28,6 +29,15 @@ def unpack(form: str, data: bytes, offset: int, where: str) -> tuple[Any, ...]:
     except struct.error:
         needed = offset + struct.calcsize(f">{form}")
         raise ProfileError(f"{len(data)} bytes where {needed} are needed", where=where) from None
+
+
+@contextmanager
+def profile_errors() -> Iterator[None]:
+    """What is wrong with a program or table inside is wrong with the profile."""
+    try:
+        yield
+    except ProgramError as error:
+        raise ProfileError(error.message, where=error.where, hint=error.hint) from error
 
 
 def check_count(count: int, where: str) -> None:

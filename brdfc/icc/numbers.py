@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -63,20 +64,29 @@ def _refuse_not_finite(values: tuple[float, ...], where: str) -> None:
             raise ProfileError(f"value {index} is {value}, not a finite number", where=where)
 
 
+def fixed_bytes(values: Sequence[float], what: str) -> bytes:
+    """Numbers as s15Fixed16: from -32768 to just under 32768 in steps of 2^-16."""
+    try:
+        return struct.pack(f">{len(values)}i", *(round(value * 65536) for value in values))
+    except (struct.error, OverflowError, ValueError) as error:
+        raise ProfileError(f"{what} cannot hold {tuple(values)}") from error
+
+
+def unpack_fixed(count: int, data: bytes, offset: int, where: str) -> tuple[float, ...]:
+    """count s15Fixed16 from an offset on."""
+    return tuple(number / 65536 for number in unpack(f"{count}i", data, offset, where))
+
+
 @dataclass(frozen=True)
 class XYZArray:
-    """`XYZ `: colours as s15Fixed16, that is from -32768 to just under 32768 in steps of 2^-16."""
+    """`XYZ `: colours as s15Fixed16, see fixed_bytes."""
 
     type_signature: ClassVar[str] = "XYZ "
     values: tuple[tuple[float, float, float], ...]
 
     def encode(self) -> bytes:
         numbers = [value for colour in self.values for value in colour]
-        try:
-            fixed = [round(number * 65536) for number in numbers]
-            return b"XYZ " + bytes(4) + struct.pack(f">{len(fixed)}i", *fixed)
-        except (struct.error, OverflowError, ValueError) as error:
-            raise ProfileError(f"'XYZ ' cannot hold {self.values}") from error
+        return b"XYZ " + bytes(4) + fixed_bytes(numbers, "'XYZ '")
 
     @staticmethod
     def decode(data: bytes, where: str) -> XYZArray:
@@ -84,7 +94,7 @@ class XYZArray:
         if rest:
             raise ProfileError(f"{len(data) - 8} bytes are no whole count of XYZ", where=where)
         check_count(count, where)
-        fixed = [number / 65536 for number in unpack(f"{3 * count}i", data, 8, where)]
+        fixed = unpack_fixed(3 * count, data, 8, where)
         return XYZArray(tuple(zip(fixed[::3], fixed[1::3], fixed[2::3], strict=True)))
 
 

@@ -13,23 +13,29 @@ from typing import ClassVar
 
 from brdfc.calc.binary import decode_element, encode_element
 from brdfc.calc.program import Element
-from brdfc.icc.layout import read_parts, unpack, unpack_records, write_parts
+from brdfc.icc.curves import Curve, ParametricCurve
+from brdfc.icc.layout import profile_errors, read_parts, unpack, unpack_records, write_parts
+from brdfc.icc.luts import StagedLut, TableLut
 from brdfc.icc.numbers import NUMBER_FORMATS, NumberArray, Signature, XYZArray
 from brdfc.icc.signatures import signature_text
 from brdfc.icc.structures import Structure
 from brdfc.icc.texts import Dictionary, LocalizedText, Utf8Array, Utf8Text
 from brdfc.icc.viewing import SpectralViewingConditions
-from brdfc.source.errors import ProfileError, ProgramError
+from brdfc.source.errors import ProfileError
 
 __all__ = [
+    "Curve",
     "Dictionary",
     "LocalizedText",
     "NumberArray",
     "Opaque",
+    "ParametricCurve",
     "Pipeline",
     "Signature",
     "SpectralViewingConditions",
+    "StagedLut",
     "Structure",
+    "TableLut",
     "Tag",
     "Utf8Array",
     "Utf8Text",
@@ -70,10 +76,8 @@ class Pipeline:
 
 
 def _element(data: bytes, where: str) -> Element:
-    try:
+    with profile_errors():
         return decode_element(data, where)
-    except ProgramError as error:
-        raise ProfileError(error.message, where=error.where, hint=error.hint) from error
 
 
 @dataclass(frozen=True)
@@ -101,6 +105,10 @@ Tag = (
     | Pipeline
     | SpectralViewingConditions
     | Structure
+    | Curve
+    | ParametricCurve
+    | TableLut
+    | StagedLut
     | Opaque
 )
 
@@ -120,6 +128,12 @@ DECODERS: dict[bytes, Callable[[bytes, str], Tag]] = {
     b"XYZ ": XYZArray.decode,
     b"sig ": Signature.decode,
     b"mpet": Pipeline.decode,
+    b"curv": Curve.decode,
+    b"para": ParametricCurve.decode,
+    b"mft1": TableLut.decode,
+    b"mft2": TableLut.decode,
+    b"mAB ": StagedLut.decode,
+    b"mBA ": StagedLut.decode,
     b"svcn": SpectralViewingConditions.decode,
     **{kind.encode(): NumberArray.decode for kind in NUMBER_FORMATS},
 }

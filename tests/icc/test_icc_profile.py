@@ -12,6 +12,7 @@ from brdfc.icc.header import D50, Header, SpectralRange
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import counted_space, multiplex_space, n_channel_space
 from brdfc.icc.types import (
+    Curve,
     Dictionary,
     LocalizedText,
     Opaque,
@@ -179,7 +180,7 @@ def test_what_cannot_be_written_is_named():
 
 
 def test_a_version_2_profile_is_read():
-    curve = Opaque(b"curv" + bytes(8))
+    curve = Curve(gamma=2.5)
     white = XYZArray((D50,))
     colorants = dict.fromkeys(("wtpt", "rXYZ", "gXYZ", "bXYZ"), white)
     curves = dict.fromkeys(("rTRC", "gTRC", "bTRC"), curve)

@@ -29,6 +29,7 @@ from brdfc.icc.header import D50, Header, SpectralRange
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import multiplex_space, n_channel_space
 from brdfc.icc.types import (
+    Curve,
     Dictionary,
     LocalizedText,
     NumberArray,
@@ -239,7 +240,8 @@ TAGS: dict[str, Tag] = {
     "nested structure": Structure(
         "a\x01cd", {"in  ": Structure("efgh", {"ab\xffd": Utf8Text("b")})}
     ),
-    "carried": Opaque(b"curv" + bytes(4) + struct.pack(">IH", 1, 0x0233)),
+    "carried": Opaque(b"ncpi" + bytes(4) + struct.pack(">IH", 1, 0x0233)),
+    "as bytes": Curve(gamma=2.25),
     "identity": Pipeline(3, 3, ()),
 }
 
