@@ -29,7 +29,7 @@ from brdfc.calc.price import operations
 from brdfc.calc.program import Program
 from brdfc.calc.text import assemble
 from brdfc.cmm import reference
-from brdfc.cmm.transforms import transform_variables
+from brdfc.cmm.transforms import variables_of
 from brdfc.compiled import Compiled
 from brdfc.compiler import compile_model
 from brdfc.icc.profile import Profile
@@ -131,7 +131,8 @@ def _timed(
 
 def _known(mvis: Path, variables: dict[str, float]) -> dict[str, float]:
     """The variables that a profile has."""
-    known = {signature for signature, _ in transform_variables(Profile.load(mvis), "M2B0")}
+    profile = Profile.load(mvis)
+    known = {name for name, _ in variables_of(profile, profile.tags["M2B0"].elements)}
     return {n: v for n, v in variables.items() if n in known}
 
 

@@ -17,8 +17,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from brdfc.cmm.connect import connect as connect
     from brdfc.cmm.link import Link as Link
-    from brdfc.cmm.link import connect as connect
     from brdfc.cmm.rendering import Rendering as Rendering
     from brdfc.cmm.rendering import rendering as rendering
     from brdfc.colour.conditions import ViewingConditions as ViewingConditions
@@ -40,7 +40,7 @@ _PLACES = {
     "ViewingConditions": ("brdfc.colour.conditions", "ViewingConditions"),
     "Profile": ("brdfc.icc.profile", "Profile"),
     "compile": ("brdfc.compiler", "compile_model"),
-    "connect": ("brdfc.cmm.link", "connect"),
+    "connect": ("brdfc.cmm.connect", "connect"),
     "load": ("brdfc.lang.load", "load"),
     "rendering": ("brdfc.cmm.rendering", "rendering"),
     "viewing_conditions": ("brdfc.colour.conditions", "viewing_conditions"),

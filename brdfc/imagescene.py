@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfc.cmm.link import Link, connect
+from brdfc.cmm.connect import connect
+from brdfc.cmm.link import Link
 from brdfc.compiled import Compiled
 from brdfc.compiler import compile_model
 from brdfc.images.tiff import open_coefficients

@@ -9,16 +9,15 @@ from pathlib import Path
 import numpy as np
 
 from brdfc.checker import ERROR, OK, OPEN, Finding
-from brdfc.cmm.link import connect_alone
+from brdfc.cmm.connect import connect_alone
 from brdfc.cmm.rendering import spectral_grid
-from brdfc.profiles.conditions import profile_white
 from brdfc.colours import colours_of
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import Dictionary
 from brdfc.lang.load import load
 from brdfc.lang.model import Quantity
 from brdfc.lang.values import parse_value
-from brdfc.profiles.conditions import stated_conditions
+from brdfc.profiles.conditions import profile_white, stated_conditions
 from brdfc.profiles.metadata import (
     Described,
     describe,

@@ -60,13 +60,22 @@ class SampledCurve:
 
 
 @dataclass(frozen=True)
+class KnottedCurve:
+    """A line through points at any places, which do not fall; level before and after. No file holds
+    it: it is what the inverse of a sampled curve comes to."""
+
+    places: tuple[float, ...]
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class OpaqueCurve:
     """`clcf`, a curve sampled from a calculator: carried but not run; data are its bytes."""
 
     data: bytes
 
 
-Curve = SegmentedCurve | SampledCurve | OpaqueCurve
+Curve = SegmentedCurve | SampledCurve | KnottedCurve | OpaqueCurve
 
 
 @dataclass(frozen=True)
@@ -104,6 +113,8 @@ def _encode_curve(curve: Curve) -> bytes:
         storage = curve.samples.storage
         fields = (curve.samples.count, curve.first, curve.last, curve.extend, storage.code)
         return struct.pack(">4sIIffHH", b"sngf", 0, *fields) + curve.samples.data
+    if isinstance(curve, KnottedCurve):
+        raise ProgramError("a curve through points has no form in a file")
     _check_segmented(curve, where)
     head = struct.pack(">4sIHH", b"curf", 0, len(curve.segments), 0)
     breaks = struct.pack(f">{len(curve.breaks)}f", *curve.breaks)

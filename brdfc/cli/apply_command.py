@@ -61,8 +61,8 @@ def command(
     scheduler: str | None,
     **how: Any,
 ) -> None:
-    """Evaluate IMAGE, a TIFF of coefficients, through a MID and an MVIS, through one profile whose
-    device values they are, or through a model compiled for exactly this image.
+    """Evaluate IMAGE, a TIFF of coefficients, through a MID and an MVIS, through profiles of device
+    values, or through a model compiled for exactly this image.
 
     Its samples are the channels in the order `brdfc compile` prints them: floats, or integers with
     a --scale. The output is a TIFF: float32 X, Y, Z, with Y = 1 for white, unless --to and
@@ -71,12 +71,17 @@ def command(
     A variable with several values, `a=1,2` or `a=-60deg..60deg:5deg`, makes a sweep: a page for
     each.
 
+    Any number of profiles make a chain. Where the last is of a display or a printer, or --to names
+    one, its device values come out, 0 to 1, and the profile is embedded.
+
     \b
     Example:
       brdfc apply ward_mid.icc ward_mvis.icc coefficients.tif -o xyz.tif \\
             --env incident=40deg --env reflection=10deg
       brdfc apply ward_mid.icc ward_mvis.icc coefficients.tif -o picture.tif --to sRGB
       brdfc apply ward_mid.icc ward_mvis.icc coefficients.tif -o under_a.tif --adapt A
+      brdfc apply ward_mid.icc ward_mvis.icc coefficients.tif -o proof.tif --to press.icc \\
+            --samples uint16 --intent relative
       brdfc apply ward coefficients.tif -o xyz.tif --env incident=40deg --env reflection=10deg
       brdfc apply ward_mid.icc ward_mvis.icc scan.tif -o lobe.tif --scale 0..1 --samples uint16 \\
             --env incident=40deg --env reflection=-60deg..60deg:5deg --resume
@@ -111,7 +116,7 @@ def command(
     warn_of_defaults(chosen.link)
     warn_of_display(chosen)
     wanted = choices(
-        chosen.link, loaded, scale, samples, compression, tile, memory, threads, resume, scheduler
+        chosen.link, scale, samples, compression, tile, memory, threads, resume, scheduler
     )
     applied = apply_to_tiff(renderings, image, output, "", image_progress(), wanted)
     for name, count in applied.outside.items():
@@ -150,7 +155,7 @@ class _Compiled:
         scene: str | None,
         tolerance: float | None,
         geometry: str | None,
-        to: str,
+        to: str | None,
     ) -> None:
         from dataclasses import replace
 
@@ -161,7 +166,7 @@ class _Compiled:
         given = read_scene(scene) if scene is not None else Scene("--env")
         if tolerance is not None:
             given = replace(given, tolerance=checked_tolerance(tolerance, "--tolerance"))
-        given = replace(given, output="sRGB" if to.lower() == "srgb" else "XYZ")
+        given = replace(given, output="sRGB" if (to or "").lower() == "srgb" else "XYZ")
         self.model = load(name, geometry or given.geometry)
         self.compiled, self.took = compile_for_image(
             self.model, image, pairs(environment, "--env"), given, shown_progress

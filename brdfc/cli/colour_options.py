@@ -117,10 +117,15 @@ def rendering_options(function: Callable[..., Any]) -> Callable[..., Any]:
         function,
         click.option(
             "--to",
-            default="XYZ",
-            metavar="XYZ|Lab|sRGB|spectrum",
+            metavar="XYZ|Lab|sRGB|spectrum|PROFILE.icc",
             help="XYZ, where white has Y = 1 (default); CIELAB relative to the white; 8-bit sRGB; "
-            "reflectances, of a profile that has them.",
+            "reflectances, of a profile that has them; the device of another profile, which the "
+            "last of the profiles may name too.",
+        ),
+        click.option(
+            "--intent",
+            type=click.Choice(["perceptual", "relative", "saturation", "absolute"]),
+            help="The rendering intent. Default: colours relative to the medium.",
         ),
         click.option(
             "--adapt",
@@ -148,10 +153,16 @@ def rendering_options(function: Callable[..., Any]) -> Callable[..., Any]:
     )
 
 
+def names_a_file(to: str) -> bool:
+    """Whether what colours are wanted as is the file of a profile."""
+    return to.lower().endswith((".icc", ".icm")) or "/" in to
+
+
 def rendered(
     profiles: Sequence[str | Profile],
     environment: Sequence[str],
-    to: str,
+    to: str | None,
+    intent: str | None,
     adapt: str | None,
     illuminant: str | None,
     observer: str | None,
@@ -163,12 +174,18 @@ def rendered(
     """Profiles linked, and rendered as the rendering options say."""
     from brdfc.cmm.rendering import Target, rendering, seen_conditions, target
 
-    wanted = target(to)  # what cannot be is refused before a profile is read
+    profiles = list(profiles)
+    # What cannot be is refused before a profile is read.
+    if to is None or names_a_file(to):
+        profiles += [to] if to is not None else []
+        wanted = None
+    else:
+        wanted = target(to)
     if adaptation is not None and adapt is None and wanted is not Target.SRGB:
         raise click.UsageError("--adaptation says how colours are adapted: give --adapt too")
     seen = illuminant is not None or observer is not None
     if transform is None and (seen or wanted is Target.SPECTRUM):
         transform = "M2S0" if len(profiles) > 1 else "D2B1"
-    link = connected(profiles, environment, transform, extrapolate, engine)
+    link = connected(profiles, environment, transform, extrapolate, engine, intent)
     conditions = seen_conditions(link, illuminant, observer) if seen else None
     return rendering(link, wanted, adapt, conditions, adaptation or "bradford")

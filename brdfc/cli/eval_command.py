@@ -36,14 +36,16 @@ def command(
     as_json: bool,
     **how: Any,
 ) -> None:
-    """Evaluate pixels through a MID and an MVIS, or through one profile whose device values they
-    are: X, Y, Z with 9 digits, a line a pixel, unless --to says otherwise.
+    """Evaluate pixels through a MID and an MVIS, through a profile whose device values they are, or
+    through any chain of profiles: X, Y, Z with 9 digits, a line a pixel, unless --to says
+    otherwise.
 
     \b
     Example:
       brdfc eval ward_mid.icc ward_mvis.icc --env incident=40deg --env reflection=-10deg \\
             --pixel 0.1,0.2,0.6,0.05,0.15
       brdfc eval ward_mid.icc ward_mvis.icc --pixel 0.1,0.2,0.6,0.05,0.15 --to Lab --adapt D65
+      brdfc eval scanner.icc display.icc --pixel 0.5,0.5,0.5 --intent perceptual
     """
     chosen = rendered(profiles, environment, **how)
     link = chosen.link

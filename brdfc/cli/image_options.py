@@ -9,7 +9,6 @@ import click
 
 if TYPE_CHECKING:
     from brdfc.cmm.link import Link
-    from brdfc.icc.profile import Profile
     from brdfc.images.job import Choices
 
 
@@ -71,7 +70,6 @@ def image_options(function: Callable[..., Any]) -> Callable[..., Any]:
 
 def choices(
     link: Link,
-    profiles: Sequence[Profile],
     scale: Sequence[str],
     samples: str | None,
     compression: str,
@@ -94,7 +92,6 @@ def choices(
         resume=resume,
         threads=threads,
         scheduler=scheduler,
-        profiles=tuple(profiles),
     )
 
 

@@ -129,33 +129,31 @@ def connected(
     transform: str | None = None,
     extrapolate: bool = False,
     engine: str = "auto",
+    intent: str | None = None,
 ) -> Link:
-    """Profiles linked, variables read in the units that the last declares.
+    """Profiles linked, variables read in the units that the profiles declare.
 
-    transform: the tag of the last to use, see cmm.link.connect.
+    transform: the tag of the last to use, and intent: see cmm.connect.connect.
     """
-    from brdfc.cmm.link import connect
-    from brdfc.cmm.transforms import device_transform, transform_variables
+    from functools import partial
+
+    from brdfc.cmm.connect import connect
     from brdfc.icc.profile import Profile
-    from brdfc.lang.types import TYPES
+    from brdfc.lang.types import TYPES, DeclaredType
     from brdfc.lang.values import parse_value
 
     loaded = [p if isinstance(p, Profile) else Profile.load(p) for p in profiles]
     given = pairs(environment, "--env")
-    types = {}
-    if given:
-        last = loaded[-1]
-        usual = transform or ("M2B0" if len(loaded) > 1 else device_transform(last))
-        for signature, described in transform_variables(last, usual):
-            types[signature] = described.type if described else None
-            if described:
-                types[described.name] = described.type
+    linked = partial(connect, *loaded, transform=transform, intent=intent, engine=engine)
+    types: dict[str, DeclaredType] = {}
+    for described in linked().stated_variables if given else ():
+        types |= dict.fromkeys((described.signature, described.name), described.type)
     values = {}
     for name, text in given.items():
         # A foreign profile does not say what its variables are; the unit the user writes does.
         declared = types.get(name) or TYPES["angle" if text[-3:] in ("deg", "rad") else "number"]
         values[name] = parse_value(text, declared, name)[0]
-    return connect(*loaded, env=values, transform=transform, extrapolate=extrapolate, engine=engine)
+    return linked(env=values, extrapolate=extrapolate)
 
 
 def warn_of_display(chosen: Rendering) -> None:

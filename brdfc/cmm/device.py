@@ -1,4 +1,4 @@
-"""Transforms of tables and tone curves (`mft1`, `mft2`, `mAB `, `mBA `, matrix and TRC) as elements.
+"""Transforms of tables and tone curves (`mft1`, `mft2`, `mAB `, `mBA `, matrix, TRC) as elements.
 
 The engine runs them as it runs any element, in float32. A connection space is left as real numbers
 (X, Y, Z with Y = 1; L, a, b); device values are 0 to 1.
@@ -27,8 +27,8 @@ Lut = TableLut | StagedLut
 _XYZ_UNIT = 32768 / 65535
 """What 1 is in encoded X, Y, Z (u1Fixed15)."""
 _LAB_STEPS = {True: (652.8 / 65535, 256 / 65535), False: (1 / 100, 1 / 255)}
-"""What one of L, and one of a or b, is in encoded CIELAB. In `mft2` the upper byte of the 16 bits is
-the whole number (ICC.1:2022, 10.10), elsewhere 65535 stands for 100 and for 127."""
+"""What one of L, and one of a or b, is in encoded CIELAB. In `mft2` the upper byte of the 16 bits
+is the whole number (ICC.1:2022, 10.10), elsewhere 65535 stands for 100 and for 127."""
 
 
 def lut_elements(
@@ -104,6 +104,8 @@ class Shaper:
     elements: tuple[Element, ...]
 
 
+_WORST = 1e6
+"""The condition of a matrix whose inverse float32 makes nothing of; of a display it is under 10."""
 _COLUMNS, _TONES = ("rXYZ", "gXYZ", "bXYZ"), ("rTRC", "gTRC", "bTRC")
 
 
@@ -128,10 +130,9 @@ def _matrix(profile: Profile, inverse: bool) -> Shaper | None:
     matrix = np.array(colorants, dtype=np.float64).T
     if not inverse:
         return Shaper("matrix", 3, (CurveSet(tuple(map(tone, tones))), matrix_element(matrix)))
-    try:
-        back = np.asarray(np.linalg.inv(matrix), dtype=np.float64)
-    except np.linalg.LinAlgError:
-        raise LinkError("the profile's colorants lie in a plane: no matrix leads back") from None
+    if not np.linalg.cond(matrix) < _WORST:
+        raise LinkError("the profile's colorants lie in a plane: no matrix leads back")
+    back = np.asarray(np.linalg.inv(matrix), dtype=np.float64)
     return Shaper("matrix", 3, (matrix_element(back), CurveSet(tuple(map(inverse_tone, tones)))))
 
 

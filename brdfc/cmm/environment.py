@@ -35,13 +35,12 @@ def environment_of(
     by: dict[str, str] = {}
     for name, value in given.items():
         if name not in by_name:
-            profiles = {id(stage.profile): stage.profile for stage in stages}
-            if any([_settled(p, name, value, extrapolate) for p in profiles.values()]):
+            settled = [_settled(stage.profile, name, value, extrapolate) for stage in stages]
+            if any(settled):
                 continue
             raise ValueGivenError(
                 f"the profile has no variable '{name}'",
-                hint=did_you_mean(name, by_name)
-                or f"its variables: {', '.join(listed) or 'none'}",
+                hint=did_you_mean(name, by_name) or f"its variables: {', '.join(listed) or 'none'}",
             )
         for signature, described in by_name[name]:
             if by.setdefault(signature, name) != name:

@@ -40,8 +40,8 @@ def available() -> bool:
 
 @dataclass(frozen=True)
 class ReferenceRun:
-    """xyz: (runs, pixels, 3) in float64, as the engine's float32 stand for. seconds: the least
-    time one pass over the pixels took, for each run."""
+    """xyz: (runs, pixels, values) in float64, as the engine's float32 stand for: X, Y, Z, or what
+    else a chain leads to. seconds: the least time one pass over the pixels took, for each run."""
 
     xyz: NDArray[np.float64]
     seconds: NDArray[np.float64]
@@ -74,14 +74,18 @@ def chain(
     runs: Sequence[Mapping[str, float]] = ({},),
     repeat: int = 1,
     encoded: bool = True,
+    intent: int = 0,
 ) -> ReferenceRun:
-    """As apply, through any profiles that lead to XYZ. encoded: what comes out is PCS-encoded: the
-    last profile's connection space, and not the device values of a profile of XYZ."""
+    """As apply, through any profiles. encoded: what comes out is XYZ, PCS-encoded; otherwise it is
+    given as it comes, device values. intent: the rendering intent by its number, which the engine
+    takes for all profiles but MID and MVIS."""
     request = {
         "task": "apply",
         "profiles": [str(path) for path in profiles],
         "runs": [dict(run) for run in runs],
         "repeat": repeat,
+        "intent": intent,
+        "space": _XYZ_SPACE if encoded else _UNKNOWN_SPACE,
     }
     answer = _ask(request, {"pixels": np.ascontiguousarray(pixels, dtype=np.float32)})
     if "status" in answer:
@@ -120,6 +124,15 @@ class _Variables(ctypes.Structure):
         ("count", ctypes.c_uint32),
         ("signatures", ctypes.POINTER(ctypes.c_uint32)),
         ("values", ctypes.POINTER(ctypes.c_float)),
+    )
+
+
+class _Info(ctypes.Structure):
+    _fields_ = (
+        ("source", ctypes.c_uint32),
+        ("destination", ctypes.c_uint32),
+        ("inputs", ctypes.c_uint16),
+        ("outputs", ctypes.c_uint16),
     )
 
 
@@ -169,7 +182,7 @@ def _apply(request: dict[str, Any], pixels: NDArray[np.float32]) -> dict[str, An
     library.IccCmmCreate.restype = ctypes.c_void_p
     xyz, seconds = [], []
     for run in request["runs"]:
-        handle = ctypes.c_void_p(library.IccCmmCreate(_UNKNOWN_SPACE, _XYZ_SPACE, 1))
+        handle = ctypes.c_void_p(library.IccCmmCreate(_UNKNOWN_SPACE, request["space"], 1))
         count = len(run)
         signatures = (ctypes.c_uint32 * max(count, 1))(
             *(int.from_bytes(name.ljust(4).encode("latin-1"), "big") for name in run)
@@ -178,14 +191,18 @@ def _apply(request: dict[str, Any], pixels: NDArray[np.float32]) -> dict[str, An
         variables = _Variables(count, signatures, values)
         for path in request["profiles"]:
             status = library.IccCmmAttachProfileFile(
-                handle, path.encode(), 0, 0, None, 0, 0, 0, ctypes.byref(variables)
+                handle, path.encode(), request["intent"], 0, None, 0, 0, 0, ctypes.byref(variables)
             )
             if status:
                 return {"status": status}
         status = library.IccCmmBegin(handle)
         if status:  # applying now would crash
             return {"status": status}
-        result = np.empty((len(pixels), 3), dtype=np.float32)
+        info = _Info()
+        library.IccCmmGetInfo(handle, ctypes.byref(info))
+        if info.inputs != pixels.shape[1]:
+            return {"status": "inputs"}
+        result = np.empty((len(pixels), info.outputs), dtype=np.float32)
         least = float("inf")
         for _ in range(request["repeat"]):
             start = perf_counter()

@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from brdfc.cmm.connection import custom_conversion
 from brdfc.cmm.link import Link
-from brdfc.cmm.transforms import leads_to_reflectances, pipeline, run_pipeline
+from brdfc.cmm.stages import Kind
 from brdfc.colour.adaptation import adaptation_matrix, adaptation_transform
 from brdfc.colour.conditions import (
     ViewingConditions,
@@ -27,6 +28,7 @@ from brdfc.colour.conditions import (
 from brdfc.colour.difference import D50, lab
 from brdfc.colour.picture import srgb
 from brdfc.colour.spectrum import Grid
+from brdfc.engine.runs import run
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import Pipeline
 from brdfc.profiles.conditions import profile_white, stated_conditions
@@ -44,6 +46,7 @@ class Target(Enum):
     LAB = "Lab"
     SRGB = "sRGB"
     SPECTRUM = "spectrum"
+    DEVICE = "device"
 
 
 def target(text: str) -> Target:
@@ -78,7 +81,7 @@ class Rendering:
     @property
     def samples(self) -> int:
         """Numbers a pixel of the result has."""
-        return self.link.outputs if self.to is Target.SPECTRUM else 3
+        return self.link.outputs if self.to in _AS_THEY_ARE else 3
 
     @property
     def dtype(self) -> Any:
@@ -98,7 +101,7 @@ class Rendering:
 
     def finished(self, values: NDArray[np.float32]) -> tuple[NDArray[Any], int]:
         """As counted, of the link's own values (..., outputs)."""
-        if self.to is Target.SPECTRUM or (self.to is Target.XYZ and self.plain):
+        if self.to in _AS_THEY_ARE or (self.to is Target.XYZ and self.plain):
             return values, 0
         exact = self.colours(values)
         if self.to is Target.SRGB:
@@ -119,22 +122,27 @@ class Rendering:
         if self.observer is not None:
             exact = exact @ self.observer.T
         if self.to_standard is not None:
-            exact = run_pipeline(self.to_standard, exact, {}).astype(np.float64)
+            exact = run(self.to_standard.elements, 3, exact, {}).astype(np.float64)
         if self.adaptation is not None:
             exact = exact @ self.adaptation.T
         return exact
 
 
+_AS_THEY_ARE = (Target.SPECTRUM, Target.DEVICE)
+"""What is given as the link has it."""
+
+
 def rendering(
     link: Link,
-    to: Target | str = Target.XYZ,
+    to: Target | str | None = None,
     adapt: str | None = None,
     conditions: ViewingConditions | None = None,
     transform: str = "bradford",
 ) -> Rendering:
     """What becomes of a link's values.
 
-    to: a Target, or its name. adapt: the white that colours are adapted to: the name of an
+    to: a Target, or its name; None for device values where the link leads to a device, and else for
+    XYZ. adapt: the white that colours are adapted to: the name of an
     illuminant, X,Y,Z, or None for the profile's own; sRGB has D65, and needs none. conditions: the
     light and the observer that reflectances are seen with; the profile's own where None.
     transform: how colours are adapted where the profile does not say (see adaptation.TRANSFORMS).
@@ -142,14 +150,25 @@ def rendering(
     Raises LinkError where a profile does not say enough of its colours, and ValueGivenError for
     what makes no sense of this profile.
     """
+    gives = link.gives.kind
     to = target(to) if isinstance(to, str) else to
-    spectral = leads_to_reflectances(link.profile, link.transform)
-    if to is Target.SPECTRUM:
-        if not spectral:
-            raise LinkError("the profile has no reflectances to give", hint=_SPECTRAL)
+    if to is None:
+        to = Target.DEVICE if gives is Kind.DEVICE else Target.XYZ
+    if (to is Target.DEVICE) != (gives is Kind.DEVICE) or gives is Kind.MULTIPLEX:
+        raise LinkError(
+            f"the profiles lead to {link.gives}, not to {_MEANT[to]}",
+            hint="the profile of a display or printer as the last leads to device values, any "
+            "other to colours",
+        )
+    spectral = gives is Kind.REFLECTANCES
+    if to is Target.SPECTRUM and not spectral:
+        raise LinkError("the profile has no reflectances to give", hint=_SPECTRAL)
+    if to in _AS_THEY_ARE:
         if adapt is not None or conditions is not None:
-            raise ValueGivenError("a light or an adaptation changes no reflectances")
-        return Rendering(link, to, (1.0, 1.0, 1.0), note="reflectances")
+            what = "reflectances" if spectral else "device values"
+            raise ValueGivenError(f"a light or an adaptation changes no {what}")
+        note = "reflectances" if spectral else ""
+        return Rendering(link, to, (1.0, 1.0, 1.0), note=note)
     if conditions is not None and not spectral:
         raise LinkError(
             f"another light or observer needs reflectances, and '{link.transform}' leads to none",
@@ -162,6 +181,7 @@ def rendering(
     return _adapted(found, adapt, adaptation_transform(transform))
 
 
+_MEANT = dict.fromkeys(Target, "colours") | {Target.DEVICE: "device values"}
 _SPECTRAL = "compile the model with --spectral 400nm..700nm,10nm"
 
 
@@ -220,7 +240,7 @@ def _adapted(found: Rendering, adapt: str | None, transform: str) -> Rendering:
     # Reflectances under another light than the profile's come to D50 as the user says.
     own = found.observer is None or _same(found.white, profile_white(found.link.profile))
     if found.white != D50 and own:
-        found = replace(found, to_standard=_to_standard(found), white=D50)
+        found = replace(found, to_standard=custom_conversion(found.link.profile, "c2sp"), white=D50)
     if white != found.white:
         matrix = adaptation_matrix(found.white, white, transform)
         found = replace(found, adaptation=matrix, white=white)
@@ -230,21 +250,6 @@ def _adapted(found: Rendering, adapt: str | None, transform: str) -> Rendering:
 
 def _same(a: XYZ, b: XYZ) -> bool:
     return bool(np.allclose(a, b, rtol=0, atol=1e-6))
-
-
-def _to_standard(found: Rendering) -> Pipeline:
-    profile = found.link.profile
-    if not isinstance(profile.tags.get("c2sp"), Pipeline):
-        white = ", ".join(f"{v:.4g}" for v in found.white)
-        raise LinkError(
-            f"the profile's light has the white ({white}), and the profile does not say how its "
-            "colours come to another: it has no viewing conditions ('svcn', 'c2sp')",
-            hint="compile it with --white or --illuminant",
-        )
-    way = pipeline(profile, "c2sp")
-    if (way.inputs, way.outputs) != (3, 3):
-        raise LinkError(f"'c2sp' takes {way.inputs} values to {way.outputs}, not 3 to 3")
-    return way
 
 
 def _white(text: str) -> tuple[str, XYZ]:

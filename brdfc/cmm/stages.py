@@ -126,7 +126,8 @@ def stage_of(
     role = _role(profile, given, following)
     takes, gives = _spaces(profile, role)
     if given is not None and given != takes:
-        raise LinkError(f"{given} do not go into a profile that takes {takes}")
+        order = "give the MID first, then the MVIS" if role is _IDENTIFY else None
+        raise LinkError(f"{given} do not go into a profile that takes {takes}", hint=order)
     wanted = intent
     if wanted is None:
         wanted = _USUAL.get(role.takes, _USUAL.get(role.gives, Intent.RELATIVE))
@@ -232,6 +233,8 @@ def _in_space(
         inner = tag.elements
     else:
         inner = lut_elements(tag, profile.header.pcs, *sides)
+    if not any(sides):
+        return inner
     for side, count in zip(sides, (tag.inputs, tag.outputs), strict=True):
         if side and (count, profile.header.pcs) not in ((3, b"XYZ "), (3, b"Lab ")):
             space = named_space(profile.header.pcs)
@@ -245,6 +248,8 @@ def _shaped(profile: Profile, role: Role, takes: Space, gives: Space, wanted: In
     """The stage of a profile that has tone curves, and a matrix where it has colours."""
     inverse = role is _TO_DEVICE
     shaper = matrix_shaper(profile, inverse) if inverse or role is _FROM_DEVICE else None
+    if shaper is None and takes.kind is not Kind.COLOURS and gives.kind is not Kind.COLOURS:
+        raise LinkError(f"the profile has no '{role.families[0]}{_ORDER[wanted][0]}' transform")
     if shaper is None:
         tags = [f"{family}{n}" for family in role.families for n in _ORDER[wanted]]
         raise LinkError(

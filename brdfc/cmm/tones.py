@@ -108,7 +108,7 @@ def _inverse_of_formula(curve: ParametricCurve) -> Curve | None:
     middle, high = (a * split + b) ** g + e, (a + b) ** g + e
     low = offset if split > 0 else middle
     if split > 0 and slope > 0:
-        breaks = (middle,) if split < 1 else ()
+        breaks = (slope * split + offset,) if split < 1 else ()
         lower_inverse = _line(1 / slope, -offset / slope)
         segments = (lower_inverse, upper_inverse) if split < 1 else (lower_inverse,)
     else:
@@ -122,13 +122,12 @@ def _inverse_of_formula(curve: ParametricCurve) -> Curve | None:
 
 
 def _through(places: Wide, values: Wide) -> KnottedCurve:
-    """The curve from values to places, which rises; where several places have one value it is the
-    last of them, of the greatest value the first."""
+    """The curve from values to places, which rises. Where the curve is level it steps."""
     if values[0] > values[-1]:
         places, values = places[::-1], values[::-1]
     rising = np.maximum.accumulate(values)
-    kept = np.append(rising[1:] > rising[:-1], False)
-    kept[np.searchsorted(rising, rising[-1])] = True
-    if kept.sum() < 2:
+    if rising[0] == rising[-1]:
         raise LinkError("a tone curve is constant, and has no inverse")
+    steps = np.diff(rising) > 0
+    kept = np.append(steps, True) | np.append(True, steps)  # both ends of what is level
     return KnottedCurve(tuple(rising[kept].tolist()), tuple(places[kept].tolist()))

@@ -11,6 +11,7 @@ from brdfc.calc.curves import (
     Curve,
     CurveSet,
     FormulaSegment,
+    KnottedCurve,
     OpaqueCurve,
     SampledCurve,
     SampledSegment,
@@ -30,6 +31,8 @@ def apply_curves(curves: CurveSet, inputs: Sequence[Values]) -> list[Values]:
 def _apply(curve: Curve, x: Values) -> Values:
     if isinstance(curve, SampledCurve):
         return _sampled(curve, x)
+    if isinstance(curve, KnottedCurve):
+        return np.interp(x, curve.places, curve.values).astype(np.float32)
     if isinstance(curve, OpaqueCurve):
         raise ProgramError("curves of kind 'clcf' cannot be run yet")
     return _segmented(curve, x)

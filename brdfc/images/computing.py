@@ -37,7 +37,7 @@ class Computing:
     def working(self) -> int:
         """Bytes that a pixel takes while it is computed with, about."""
         floats = 4 * (3 * len(self.columns) + (1 + len(self.renderings)) * self.link.outputs)
-        plain = self.renderings[0].to in (Target.XYZ, Target.SPECTRUM)
+        plain = self.renderings[0].to in (Target.XYZ, Target.SPECTRUM, Target.DEVICE)
         return floats + (8 * 3 * 2 if plain else 8 * 3 * 8)
 
     def page(self, page: int) -> Computing:

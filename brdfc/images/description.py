@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from brdfc.cmm.link import Link
 from brdfc.cmm.rendering import Rendering, Target
-from brdfc.cmm.transforms import transform_variables
 from brdfc.icc.profile import Profile, compute_profile_id
 from brdfc.icc.texts import LocalizedText
 from brdfc.images.samples import Samples
@@ -18,6 +17,7 @@ _NAMES = {
     Target.LAB: "CIELAB",
     Target.SRGB: "sRGB",
     Target.SPECTRUM: "reflectances",
+    Target.DEVICE: "device values",
 }
 
 _DIGITS = 7
@@ -34,6 +34,8 @@ def described(
     """ASCII, a fact a line; run: what else there is to say. See variables for the run's."""
     link = rendering.link
     lines = [_NAMES[rendering.to]]
+    if rendering.to is Target.DEVICE:
+        lines[0] = str(link.gives)
     if str(samples):
         lines.append(f"samples: {samples}")
     if rendering.note and rendering.note != lines[0]:
@@ -53,7 +55,7 @@ def described(
 def variables(link: Link) -> dict[str, str]:
     """Every variable of a run, with the value in effect: given, or the profile's default."""
     found = {}
-    for signature, known in transform_variables(link.profile, link.transform):
+    for signature, known in (v for stage in link.stages for v in stage.variables):
         value = link.environment.get(signature)
         if known is not None:
             values = known.default if value is None else (float(value),)  # type: ignore[arg-type]

@@ -27,7 +27,8 @@ TILES = 16
 @dataclass(frozen=True)
 class Format:
     """A TIFF of (height, width, samples) of a kind. tile: the side of its tiles, 0 for strips;
-    compression: one of COMPRESSIONS; picture: samples are red, green and blue of sRGB."""
+    compression: one of COMPRESSIONS; photometric: what TIFF calls the samples, and embedded: the
+    profile that says what they are, if any."""
 
     height: int
     width: int
@@ -35,7 +36,8 @@ class Format:
     kind: np.dtype[Any]
     tile: int = 0
     compression: str = "none"
-    picture: bool = False
+    photometric: str = "minisblack"
+    embedded: bytes | None = None
 
     def __post_init__(self) -> None:
         if self.compression not in COMPRESSIONS:
@@ -93,7 +95,9 @@ class Format:
             **({"tile": (self.tile, self.tile)} if self.tile else {}),
             **({} if self.tile else {"rowsperstrip": self.rows_per_strip}),
             **({"compression": _TAGS[self.compression]} if self.compressed else {}),
-            **(_picture() if self.picture else _numbers(self.samples)),
+            "photometric": self.photometric,
+            "extrasamples": ("unspecified",) * (self.samples - _COLOURS[self.photometric]),
+            "iccprofile": self.embedded,
         }
 
     def tiles(self, window: Window, values: NDArray[Any]) -> NDArray[Any]:
@@ -143,17 +147,13 @@ def _software() -> str:
     return f"brdfc {__version__}"
 
 
-def _numbers(samples: int) -> dict[str, Any]:
-    more = ("unspecified",) * (samples - 1)
-    return {"photometric": "minisblack", "extrasamples": more}
-
-
-def _picture() -> dict[str, Any]:
-    return {"photometric": "rgb", "iccprofile": _srgb_profile()}
+_COLOURS = {"minisblack": 1, "rgb": 3, "separated": 4}
+"""Samples of a pixel that are no extra ones."""
 
 
 @cache
-def _srgb_profile() -> bytes:
+def srgb_profile() -> bytes:
+    """A profile of sRGB, to be embedded."""
     from PIL import ImageCms
 
     made = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()

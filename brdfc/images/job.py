@@ -15,7 +15,7 @@ from brdfc.icc.profile import Profile
 from brdfc.images.computing import Computing, columns
 from brdfc.images.counts import Counts
 from brdfc.images.description import described
-from brdfc.images.format import TILES, Format, encoder
+from brdfc.images.format import TILES, Format, encoder, srgb_profile
 from brdfc.images.memory import USUAL, Cost, Plan, planned
 from brdfc.images.samples import Ends, samples
 from brdfc.images.scaling import scaling
@@ -32,8 +32,7 @@ class Choices:
     compression, tile: see Format; memory: bytes that buffers may take; resume: keep what is done
     when a sweep is interrupted, and go on from what was kept; threads: as many as there are
     processors where None; scheduler: the address of a cluster
-    that does it, see cluster; profiles: what the file says it came through, the last of the link
-    where none are given.
+    that does it, see cluster.
     """
 
     scale: Mapping[str, Ends] = field(default_factory=dict)
@@ -44,7 +43,6 @@ class Choices:
     resume: bool = False
     threads: int | None = None
     scheduler: str | None = None
-    profiles: tuple[Profile, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -109,7 +107,7 @@ def prepared(
         kind.kind,
         _tile(image, choices),
         choices.compression,
-        rendering.to is Target.SRGB,
+        *_named_colours(rendering),
     )
     if form.compressed and (choices.resume or choices.scheduler is not None):
         raise ImageError(
@@ -120,7 +118,7 @@ def prepared(
     if choices.scheduler is not None and choices.resume:
         raise ImageError("a run on a cluster cannot be resumed", hint="leave out --resume")
     check_room(target, form, len(renderings))
-    profiles = choices.profiles or (link.profile,)
+    profiles = [stage.profile for stage in link.stages]
     texts = tuple(described(each, profiles, kind, scaled, run) for each in renderings)
     computing = Computing(
         tuple(renderings), kind, tuple(wanted), image.channels, image.height * image.width
@@ -135,6 +133,21 @@ def prepared(
     opened = image.scaled(scaled)
     identity = _identity(opened, renderings, profiles, form, texts)
     return Job(opened, computing, form, texts, Path(target), plan, identity)
+
+
+_PHOTOMETRIC = {b"RGB ": "rgb", b"CMYK": "separated"}
+"""Device spaces that TIFF has a name for."""
+
+
+def _named_colours(rendering: Rendering) -> tuple[str, bytes | None]:
+    """What TIFF calls the samples, and the profile to embed."""
+    if rendering.to is Target.SRGB:
+        return "rgb", srgb_profile()
+    if rendering.to is Target.DEVICE:
+        link = rendering.link
+        profile = link.profile.source or link.profile.to_bytes()
+        return _PHOTOMETRIC.get(link.gives.device, "minisblack"), profile
+    return "minisblack", None
 
 
 def _tile(image: CoefficientImage, choices: Choices) -> int:

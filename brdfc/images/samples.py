@@ -63,7 +63,7 @@ def samples(text: str | None, rendering: Rendering) -> Samples:
                 f"--samples {text}: a picture in sRGB has 8 or 16 bits", hint="uint8 or uint16"
             )
         return Samples(np.dtype(kind))
-    if kind == "uint8":
+    if kind == "uint8" and rendering.to is not Target.DEVICE:
         raise ValueGivenError("8 bits are for pictures", hint="--to sRGB, or --samples uint16")
     if kind == "float32":
         if low is not None:
@@ -74,7 +74,7 @@ def samples(text: str | None, rendering: Rendering) -> Samples:
             "CIELAB as integers needs the range that they stand for",
             hint="--samples uint16:-128..128",
         )
-    return Samples(np.dtype(np.uint16), ends(low or "0", high or "1"))
+    return Samples(np.dtype(kind), ends(low or "0", high or "1"))
 
 
 def ends(low: str, high: str) -> Ends:

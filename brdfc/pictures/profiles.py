@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from brdfc.cmm.link import Link, channel_defaults, connect_alone, variable_names
+from brdfc.cmm.connect import connect_alone
+from brdfc.cmm.link import Link, channel_defaults, variable_names
 from brdfc.cmm.rendering import Rendering, rendering
 from brdfc.icc.profile import Profile
 from brdfc.lang.values import parse_value

@@ -65,6 +65,7 @@ def _curve_node(curve: Curve, calculator: Callable[[bytes], Node]) -> Node:
         }
         inner = calculator(curve.data[_CALCULATOR_CURVE.size :])
         return Node("SampledCalculatorCurve", attributes, [inner])
+    assert isinstance(curve, SegmentedCurve)  # those through points are in no profile
     ends = ["-infinity", *map(number, curve.breaks), "+infinity"]
     pieces = zip(curve.segments, ends, ends[1:], strict=False)
     return Node("SegmentedCurve", {}, [_segment_node(*piece) for piece in pieces])

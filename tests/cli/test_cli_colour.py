@@ -152,7 +152,7 @@ def test_mistakes_are_explained_and_nothing_is_written(
 def test_a_light_needs_reflectances(folder: Path) -> None:
     profiles = ["lamp_mid.icc", "lamp_mvis.icc"]
     done = run("eval", *profiles, "--pixel", PIXEL, "--illuminant", "A", cwd=folder)
-    assert "error: the profile has no 'M2S0' transform" in done.stderr
+    assert "error: profile 2 of 2: the profile has no 'M2S0' transform" in done.stderr
     assert "hint: compile the model with --spectral" in done.stderr
 
 
@@ -174,7 +174,7 @@ def test_what_is_not_said_of_the_viewing_is_the_profiles(folder: Path, tmp_path:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--transform", "A2M0"], "has no 'A2M0' transform"),
+        (["--transform", "A2M0"], "'A2M0' does not lead from multiplex channels to colours"),
         (["--adaptation", "cat16"], "give --adapt too"),
         (["--transform", "M2S1"], "has no 'M2S1' transform"),
     ],
@@ -184,7 +184,7 @@ def test_what_makes_no_sense_of_a_rendering(options: list[str], message: str, fo
     assert done.returncode in (1, 2)
     assert message in done.stderr
     one = run("eval", "lamp_mid.icc", "--pixel", PIXEL, "--transform", "A2M0", cwd=folder)
-    assert "'A2M0' does not lead to colours" in one.stderr
+    assert "the last of 1 profiles is a MID, and it needs an MVIS" in one.stderr
 
 
 def test_an_output_replaces_no_profile(folder: Path) -> None:

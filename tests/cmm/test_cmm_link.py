@@ -106,8 +106,8 @@ def test_undefined_variables_take_the_models_default(ward: brdfc.Compiled) -> No
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda c: (c.mvis, c.mid), "the first profile must be a MID"),
-        (lambda c: (c.mid, c.mid), "the second profile must be an MVIS"),
+        (lambda c: (c.mvis, c.mid), "the first of 2 profiles is an MVIS, and it needs a MID"),
+        (lambda c: (c.mid, c.mid), "after a MID the next profile must be an MVIS"),
         (lambda c: (with_tags(c.mid, A2M0=None), c.mvis), "no 'A2M0' transform"),
         (lambda c: (with_tags(c.mid, mcta=None), c.mvis), "names no channels"),
         (

@@ -11,9 +11,9 @@ import pytest
 
 import brdfc
 from brdfc.cmm import reference
-from brdfc.cmm.transforms import run_pipeline
 from brdfc.colour.conditions import viewing_conditions
 from brdfc.colour.difference import D50
+from brdfc.engine.runs import run
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import NumberArray, Pipeline, Signature, Structure
 from brdfc.icc.validate import validate
@@ -156,7 +156,7 @@ def members(made: brdfc.Compiled, tag: str = "bcp0") -> dict[str, object]:
 def parameters(made: brdfc.Compiled, pixel: np.ndarray, tag: str = "bcp0") -> np.ndarray:
     transform = members(made, tag)["xfrm"]
     assert isinstance(transform, Pipeline)
-    return run_pipeline(transform, pixel, {})
+    return run(transform.elements, transform.inputs, pixel, {})
 
 
 @pytest.mark.parametrize("name", REGISTERED)
