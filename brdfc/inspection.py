@@ -46,8 +46,7 @@ def prove(profile: Profile, path: str) -> None:
     """Prove every program of a profile safe to run; ProgramError names the tag and operation."""
     for signature, pipeline in _pipelines(profile.tags):
         for index, element in enumerate(pipeline.elements):
-            if isinstance(element, Program):
-                verify(element, f"{path}, tag '{signature}', element {index}")
+            verify(element, f"{path}, tag '{signature}', element {index}")
 
 
 def inspect(path: str | Path, engine: bool = True) -> Inspection:
