@@ -78,7 +78,8 @@ def chain(
 ) -> ReferenceRun:
     """As apply, through any profiles that lead to XYZ. encoded: what comes out is PCS-encoded: the
     last profile's connection space, and not the device values of a profile of XYZ. tetrahedral:
-    how lookup tables of three inputs are interpolated."""
+    how it interpolates tables of three inputs outside processing elements; it takes those inside
+    for linear always."""
     request = {
         "task": "apply",
         "profiles": [str(path) for path in profiles],

@@ -4,7 +4,8 @@ Both are in the reference engine's order, all in float32. Linear: the weight of 
 product of its distances from the last input to the first; corners are added with the first input's
 bit varying fastest. In tetrahedra: from the cell's first corner along its edges to the last, the
 input that has come farthest first; the steps of the third input are added first, then those of the
-second and of the first.
+second and of the first. The reference's host chooses for the tables of profiles of version 4; among
+processing elements (iccdev 0.1.1) tables are linear whatever it chooses.
 """
 
 from __future__ import annotations
@@ -28,8 +29,7 @@ _ZERO, _ONE = np.float32(0), np.float32(1)
 
 
 class Interpolation(Enum):
-    """How tables of three inputs are interpolated: the host of an engine chooses. All others are
-    linear."""
+    """How tables of three inputs are interpolated. All others are linear."""
 
     LINEAR = "linear"
     TETRAHEDRAL = "tetrahedral"

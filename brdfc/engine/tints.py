@@ -1,4 +1,5 @@
-"""Tint arrays: linear interpolation between steps, in the reference engine's order, in float32.
+"""Tint arrays: linear interpolation between steps, as the reference engine computes it: a step's
+share is rounded to float32, and the sum of both is taken in float64.
 
 Of arrays of whole numbers the reference takes the step before the one it should, and 0 as the
 first; that is not followed. They stand for 0 to 1 as in tables, and are interpolated as floats are.
@@ -23,7 +24,6 @@ def apply_tint(tint: TintArray, inputs: Sequence[Values]) -> list[Values]:
     index = np.minimum(position.astype(np.intp), last - 1)
     above = position - index.astype(np.float32)
     below = np.float32(1) - above
-    return [
-        steps[index, channel] * below + steps[index + 1, channel] * above
-        for channel in range(tint.outputs)
-    ]
+    lower, upper = (steps[i].astype(np.float64) for i in (index, index + 1))
+    sums = (lower * below[..., None] + upper * above[..., None]).astype(np.float32)
+    return [sums[..., channel] for channel in range(tint.outputs)]

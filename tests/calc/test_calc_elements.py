@@ -11,13 +11,10 @@ from calc.calc_elements import (
     ALONE,
     APPEARANCE,
     CURVE_SETS,
-    D65,
     LINE,
     SHARED,
     TABLES,
     TINTS,
-    appearance,
-    calculated,
 )
 from hypothesis import given, settings
 from hypothesis import strategies as st

@@ -80,15 +80,17 @@ def test_every_operator_of_the_table_is_known_and_no_other():
         body = [Op("in", 0, 1), Op("copy", 1, 20), Op("tput", 0, 1), Op(name, first, second)]
         run(Program(1, 1, (*body, Op("out", 0, 1)), elements), [[0.5]], {})
     # A kernel without a row, or a name without a branch, ends in the interpreter's last `else`.
+    setting = Setting({}, BINARY, Interpolation.LINEAR)
     with pytest.raises(AssertionError):
-        setting = Setting({}, BINARY, Interpolation.LINEAR)
         interpreter._other(Op("unheard"), interpreter._Machine(Program(0, 0, ()), setting, []))
 
 
 @pytest.mark.parametrize(("name", "kind"), [("tint", "tint"), ("elem", "emtx"), ("elem", "bACS")])
 def test_elements_that_are_only_carried(name, kind):
     """Numbers of a type that is not run, spectra, and a marker that changes how many channels."""
-    program = Program(1, 2, assemble(f"{{ in {name} out[0,2] }}"), (OpaqueElement(kind, 1, 2, b""),))
+    program = Program(
+        1, 2, assemble(f"{{ in {name} out[0,2] }}"), (OpaqueElement(kind, 1, 2, b""),)
+    )
     with pytest.raises(ProgramError, match=f"elements of kind '{kind}' cannot be run"):
         run(program, [[1.0]], {})
 
