@@ -1,10 +1,11 @@
-"""Tint arrays, appearance transforms and calculator curves: exact layouts, and bytes from outside."""
+"""Tint arrays, appearance transforms and calculator curves: layouts, and bytes from outside."""
 
 import struct
 
 import pytest
 from calc.calc_elements import APPEARANCE, D65, appearance, calculated
 
+from brdfc.calc.appearance import AppearanceTransform
 from brdfc.calc.binary import decode_element, encode_element
 from brdfc.calc.calculator_curves import CalculatorCurve
 from brdfc.calc.curves import CurveSet
@@ -109,7 +110,7 @@ def test_malformed(data, message):
         (TintArray(1, Samples.of([0])), "two steps or more"),
         (TintArray(2, Samples.of([0, 1, 1])), "two steps or more"),
         (appearance("XtoJ", *D65, 60, 20, INF, 1, 1), "NaN or infinite"),
-        (appearance("XtoJ", *D65, 60, 20, 0.69, 1, 1e39), "NaN or infinite"),
+        (AppearanceTransform("XtoJ", D65, 60, 20, 0.69, 1, 1e39), "cannot be encoded"),
         (CurveSet((CalculatorCurve(1, 0.0, 1.0, COPY),)), "of 1 points"),
         (CurveSet((CalculatorCurve(1 << 32, 0.0, 1.0, COPY),)), "cannot be encoded"),
         (CurveSet((CalculatorCurve(9, 0.0, 1.0, Program(1, 2, ())),)), "1 channel to 1"),
@@ -184,9 +185,8 @@ def test_samples_count_as_work():
 
 def test_programs_of_curves_are_shown():
     curves = curve_of("in rond out", 5)
-    program = Program(
-        2, 2, assemble("{ in[0,2] curv out[0,2] }"), (Matrix(1, 1, (1,), (0,)), curves)
-    )
+    elements = (Matrix(1, 1, (1,), (0,)), curves)
+    program = Program(2, 2, assemble("{ in[0,2] curv(1) out[0,2] }"), elements)
     shown = [text.splitlines()[0] for text in listing(program, "M2B0")]
     assert [text.partition(": ")[0] for text in shown] == [
         "; M2B0",
