@@ -123,6 +123,16 @@ def engine_option(function: Callable[..., Any]) -> Callable[..., Any]:
     )(function)
 
 
+def interpolation_option(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The --interpolation option of commands that run profiles."""
+    return click.option(
+        "--interpolation",
+        type=click.Choice(["linear", "tetrahedral"]),
+        default="linear",
+        help="Of lookup tables of three channels; all others are linear. Default: linear.",
+    )(function)
+
+
 def connected(
     profiles: Sequence[str | Profile],
     environment: Iterable[str],
@@ -130,6 +140,7 @@ def connected(
     extrapolate: bool = False,
     engine: str = "auto",
     intent: str | None = None,
+    interpolation: str = "linear",
 ) -> Link:
     """Profiles linked, variables read in the units that the profiles declare.
 
@@ -144,7 +155,14 @@ def connected(
 
     loaded = [p if isinstance(p, Profile) else Profile.load(p) for p in profiles]
     given = pairs(environment, "--env")
-    linked = partial(connect, *loaded, transform=transform, intent=intent, engine=engine)
+    linked = partial(
+        connect,
+        *loaded,
+        transform=transform,
+        intent=intent,
+        engine=engine,
+        interpolation=interpolation,
+    )
     types: dict[str, DeclaredType] = {}
     for described in linked().stated_variables if given else ():
         types |= dict.fromkeys((described.signature, described.name), described.type)

@@ -24,6 +24,7 @@ from brdfc.cmm.link import Link
 from brdfc.cmm.stages import Intent, Kind, Stage, stage_of
 from brdfc.engine import runs
 from brdfc.engine.choice import Engine, engine_named
+from brdfc.engine.tables import Interpolation, interpolation_named
 from brdfc.engine.trace import Chain
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import Dictionary
@@ -44,6 +45,7 @@ def connect(
     extrapolate: bool = False,
     engine: Engine | str = Engine.AUTO,
     threads: int | None = None,
+    interpolation: Interpolation | str = Interpolation.LINEAR,
 ) -> Link:
     """Connect profiles, the first the one that the samples are of: a MID to an MVIS, to the profile
     of a display or printer; device values to colours, and on.
@@ -53,7 +55,8 @@ def connect(
     "M2B0" (the usual one) or "M2S0" of an MVIS, "A2B1" or "bAB0" of a profile of device values.
     intent: an Intent, or its name; None for colours relative to the medium. extrapolate: take
     variables outside the ranges that the profiles state too. engine: what runs it, a choice.Engine
-    or its name. threads: as many as there are processors where None.
+    or its name. threads: as many as there are processors where None. interpolation: of lookup
+    tables of three inputs, a tables.Interpolation or its name; others are always linear.
     Raises ProfileError for what is no profile, LinkError for profiles that do not connect,
     ValueGivenError for variables that do not exist or are outside their range.
     """
@@ -70,7 +73,12 @@ def connect(
             f"the last of {len(loaded)} profiles is a MID, and it needs an MVIS", hint=_ORDER
         )
     link = _joined(stages, env or {}, extrapolate)
-    return replace(link, engine=engine_named(engine), threads=threads)
+    return replace(
+        link,
+        engine=engine_named(engine),
+        threads=threads,
+        interpolation=interpolation_named(interpolation),
+    )
 
 
 _ORDER = "give the MID, then the MVIS"

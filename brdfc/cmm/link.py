@@ -14,6 +14,7 @@ from brdfc.cmm.stages import Space, Stage
 from brdfc.engine import runs
 from brdfc.engine.choice import Engine
 from brdfc.engine.kernels import Values
+from brdfc.engine.tables import Interpolation
 from brdfc.engine.trace import Chain
 from brdfc.icc.profile import Profile
 from brdfc.profiles.metadata import Described
@@ -28,8 +29,8 @@ class Link:
     defaulted: the names of the channels that take their default. environment: variables by
     signature, see engine.interpreter.run. described: what the first profile says of its channels.
     samples: the names of an image's samples, where the profile was compiled for one and takes only
-    some of them. chain: the elements of the stages, and what stands between them. engine, threads:
-    how it is run, see engine.runs.
+    some of them. chain: the elements of the stages, and what stands between them. engine, threads,
+    interpolation: how it is run, see engine.runs.
     """
 
     channels: tuple[str, ...]
@@ -41,6 +42,7 @@ class Link:
     samples: tuple[str, ...] = ()
     engine: Engine = Engine.AUTO
     threads: int | None = None
+    interpolation: Interpolation = Interpolation.LINEAR
 
     @property
     def profile(self) -> Profile:
@@ -89,6 +91,7 @@ class Link:
             engine=self.engine,
             threads=self.threads,
             total=total,
+            interpolation=self.interpolation,
         )
 
     def together(
@@ -108,6 +111,7 @@ class Link:
             engine=self.engine,
             threads=self.threads,
             total=total,
+            interpolation=self.interpolation,
         )
         return results
 
@@ -132,6 +136,7 @@ class Link:
             list(results),
             engine=self.engine,
             threads=self.threads,
+            interpolation=self.interpolation,
         )
         return results.reshape(*shape, *results.shape[1:])
 

@@ -75,10 +75,12 @@ def chain(
     repeat: int = 1,
     encoded: bool = True,
     intent: int = 0,
+    tetrahedral: bool = False,
 ) -> ReferenceRun:
     """As apply, through any profiles. encoded: what comes out is XYZ, PCS-encoded; otherwise it is
     given as it comes, device values. intent: the rendering intent by its number, which the engine
-    takes for all profiles but MID and MVIS."""
+    takes for all profiles but MID and MVIS. tetrahedral: how it interpolates tables of three inputs
+    outside processing elements; it takes those inside for linear always."""
     request = {
         "task": "apply",
         "profiles": [str(path) for path in profiles],
@@ -86,6 +88,7 @@ def chain(
         "repeat": repeat,
         "intent": intent,
         "space": _XYZ_SPACE if encoded else _UNKNOWN_SPACE,
+        "interpolation": int(tetrahedral),
     }
     answer = _ask(request, {"pixels": np.ascontiguousarray(pixels, dtype=np.float32)})
     if "status" in answer:
@@ -191,7 +194,15 @@ def _apply(request: dict[str, Any], pixels: NDArray[np.float32]) -> dict[str, An
         variables = _Variables(count, signatures, values)
         for path in request["profiles"]:
             status = library.IccCmmAttachProfileFile(
-                handle, path.encode(), request["intent"], 0, None, 0, 0, 0, ctypes.byref(variables)
+                handle,
+                path.encode(),
+                request["intent"],
+                request["interpolation"],
+                None,
+                0,
+                0,
+                0,
+                ctypes.byref(variables),
             )
             if status:
                 return {"status": status}

@@ -22,6 +22,7 @@ from brdfc.cmm.transforms import (
     leads_to_reflectances,
     variables_of,
 )
+from brdfc.engine.elements import changes_nothing
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import NO_SPACE
 from brdfc.icc.types import Pipeline, XYZArray
@@ -203,7 +204,7 @@ def _tried(role: Role, wanted: Intent) -> Iterator[str]:
 
 def _known(pipeline: Pipeline) -> bool:
     """Whether every element can be run; the ICC's engine too passes over those it cannot."""
-    return not any(isinstance(e, OpaqueElement) for e in pipeline.elements)
+    return all(not isinstance(e, OpaqueElement) or changes_nothing(e) for e in pipeline.elements)
 
 
 def _asked(profile: Profile, role: Role, signature: str) -> Transform:

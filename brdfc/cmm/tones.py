@@ -8,18 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfc.calc.curves import (
-    Curve,
-    CurveSet,
     FormulaSegment,
     KnottedCurve,
     SampledCurve,
     SegmentedCurve,
 )
-from brdfc.engine.curves import apply_curves
+from brdfc.engine.curves import apply_curve
 from brdfc.icc.curves import AnyCurve, ParametricCurve
 from brdfc.source.errors import LinkError
 
 Wide = NDArray[np.float64]
+Tone = SampledCurve | SegmentedCurve | KnottedCurve
 
 _POINTS = 4096
 """Where a curve that has no inverse in closed form is looked at."""
@@ -34,7 +33,7 @@ def _line(slope: float, offset: float) -> FormulaSegment:
     return _power(1.0, slope, offset)
 
 
-def tone(curve: AnyCurve) -> Curve:
+def tone(curve: AnyCurve) -> Tone:
     """The curve as the engine runs it. What `curv` takes is clipped to 0..1, as the ICC's engine
     does; what `para` takes is not."""
     if isinstance(curve, ParametricCurve):
@@ -75,7 +74,7 @@ def _parametric(curve: ParametricCurve) -> SegmentedCurve:
     return SegmentedCurve((last,), (lower, upper))
 
 
-def inverse_tone(curve: AnyCurve) -> Curve:
+def inverse_tone(curve: AnyCurve) -> Tone:
     """The inverse over 0..1, clipped to it; LinkError for a curve that has none.
 
     In closed form where there is one, and else through the curve's own points. The reference takes
@@ -91,11 +90,11 @@ def inverse_tone(curve: AnyCurve) -> Curve:
             return _within(0.0, 1.0, (), (_power(1 / gamma),), _line(0.0, 0.0))
     samples = None if isinstance(curve, ParametricCurve) else curve.samples
     places = np.linspace(0.0, 1.0, samples.count if samples is not None else _POINTS)
-    found = apply_curves(CurveSet((tone(curve),)), [places.astype(np.float32)])[0]
+    found = apply_curve(tone(curve), places.astype(np.float32))
     return _through(places, found.astype(np.float64))
 
 
-def _inverse_of_formula(curve: ParametricCurve) -> Curve | None:
+def _inverse_of_formula(curve: ParametricCurve) -> Tone | None:
     """None where the formula does not rise from 0 to 1."""
     start, lower, upper = _pieces(curve)
     g, a, b, e = upper.parameters

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from brdfc.calc.program import Element, Program
+from brdfc.calc.program import Element
 from brdfc.calc.verify import verify
 from brdfc.icc.luts import StagedLut, TableLut
 from brdfc.icc.profile import Profile
@@ -45,9 +45,8 @@ def variables_of(profile: Profile, elements: Iterable[Element]) -> Variables:
     described = {d.signature: d for d in describe(profile, "env")}
     signatures: dict[str, None] = {}
     for element in elements:
-        if isinstance(element, Program):
-            try:
-                signatures |= dict.fromkeys(verify(element).variables)
-            except ProgramError as error:
-                raise LinkError(f"the profile's program is refused: {error}") from error
+        try:
+            signatures |= dict.fromkeys(verify(element).variables)
+        except ProgramError as error:
+            raise LinkError(f"the profile's program is refused: {error}") from error
     return tuple((s, described.get(s)) for s in signatures if s not in ("true", "ndef"))

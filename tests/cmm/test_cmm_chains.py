@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from chain_profiles import (
-    COLUMNS,
     GAMMA,
     SRGB,
     TABLE,
@@ -31,7 +30,7 @@ from brdfc.colour.conditions import viewing_conditions
 from brdfc.colour.difference import D50
 from brdfc.icc.curves import Curve, ParametricCurve
 from brdfc.icc.profile import Profile
-from brdfc.icc.types import Utf8Array, XYZArray
+from brdfc.icc.types import Utf8Array
 from brdfc.source.errors import LinkError, ValueGivenError
 
 RNG = np.random.default_rng(5)
@@ -130,23 +129,22 @@ def test_channels_to_colours_to_devices(
 )
 def test_a_tone_curve_and_its_inverse(curve: Curve | ParametricCurve) -> None:
     """To the last digits, down to black; where the curve is level, back to what gives the same."""
-    from brdfc.calc.curves import CurveSet
     from brdfc.cmm.tones import inverse_tone, tone
-    from brdfc.engine.curves import apply_curves
+    from brdfc.engine.curves import apply_curve
 
     x = np.concatenate([np.linspace(0, 1, 1001), np.logspace(-5, 0, 200)]).astype(np.float32)
-    (y,) = apply_curves(CurveSet((tone(curve),)), [x])
+    y = apply_curve(tone(curve), x)
     if curve.parameters == (0.0,) if isinstance(curve, ParametricCurve) else False:
         with pytest.raises(LinkError, match="constant"):
             inverse_tone(curve)
         return
-    (back,) = apply_curves(CurveSet((inverse_tone(curve),)), [y])
-    (again,) = apply_curves(CurveSet((tone(curve),)), [back])
+    back = apply_curve(inverse_tone(curve), y)
+    again = apply_curve(tone(curve), back)
     np.testing.assert_allclose(again, y, rtol=1e-5, atol=1e-7)
     if curve is not TABLE:  # whose 16 bits are level in places
         rises = y > y.min()
         np.testing.assert_allclose(back[rises], x[rises], rtol=2e-5, atol=1e-6)
-    beyond = apply_curves(CurveSet((inverse_tone(curve),)), [np.float32([-1, 2])])[0]
+    beyond = apply_curve(inverse_tone(curve), np.float32([-1, 2]))
     assert ((beyond >= 0) & (beyond <= 1)).all()
 
 
@@ -255,7 +253,7 @@ NO_CHAIN = {
     ),
     "no white": (lambda w: (_without(printer(), "wtpt"),), "no white of its medium"),
     "colorants in a plane": (
-        lambda w: (w.mid, w.mvis, _with(display(SRGB), bXYZ=XYZArray((COLUMNS[0],)))),
+        lambda w: (w.mid, w.mvis, _with(display(SRGB), bXYZ=display(SRGB).tags["rXYZ"])),
         "lie in a plane",
     ),
 }
