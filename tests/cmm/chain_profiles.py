@@ -88,7 +88,9 @@ def printer(storage: Storage = Storage.UINT16, version: int = 2) -> Profile:
 def staged(pcs: bytes = b"Lab ") -> Profile:
     """RGB of `mAB ` and `mBA ` with every stage."""
     matrix = (0.9, 0.05, 0.05, 0.02, 0.95, 0.03, 0.01, 0.04, 0.95, 0.01, 0.0, 0.02)
-    there = _table(3, 3, 6, 0.1 + 0.8 * _grid(3, 6) ** 1.2, Storage.UINT16)
+    points = _grid(3, 6)
+    mixed = 0.1 + 0.8 * points**1.2 * (1 - 0.5 * np.roll(points, 1, axis=-1))
+    there = _table(3, 3, 6, mixed, Storage.UINT16)
     back = _table(3, 3, 6, 0.1 + 0.8 * _grid(3, 6) ** 0.9, Storage.UINT8)
     a, m, b = (SRGB,) * 3, (GAMMA, TABLE, Curve()), (ParametricCurve(0, (1.1,)),) * 3
     onward = StagedLut("mAB ", 3, 3, b, matrix, m, there, a)

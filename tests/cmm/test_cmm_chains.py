@@ -44,13 +44,20 @@ def ward() -> brdfc.Compiled:
 
 
 def judged(
-    folder: Path, profiles: list[Profile], pixels: np.ndarray, intent: Intent, to_xyz: bool
+    folder: Path,
+    profiles: list[Profile],
+    pixels: np.ndarray,
+    intent: Intent,
+    to_xyz: bool,
+    tetrahedral: bool = False,
 ) -> np.ndarray:
     paths = []
     for number, each in zip(count(), profiles, strict=False):
         paths.append(folder / f"{number}.icc")
         each.save(paths[-1])
-    run = reference.chain(paths, pixels, encoded=to_xyz, intent=int(intent))
+    run = reference.chain(
+        paths, pixels, encoded=to_xyz, intent=int(intent), tetrahedral=tetrahedral
+    )
     return run.xyz[0]
 
 
@@ -77,6 +84,15 @@ def test_device_values_to_colours(name: str, intent: Intent, tmp_path: Path) -> 
     ours = connect(made, intent=intent).apply(pixels).astype(np.float64)
     theirs = judged(tmp_path, [made], pixels, intent, to_xyz=True)
     np.testing.assert_allclose(ours, theirs, atol=5e-6)
+
+
+def test_tables_in_tetrahedra(tmp_path: Path) -> None:
+    pytest.importorskip("iccdev")
+    made = staged()
+    ours = connect(made, interpolation="tetrahedral").apply(RGB)
+    theirs = judged(tmp_path, [made], RGB, Intent.RELATIVE, to_xyz=True, tetrahedral=True)
+    np.testing.assert_allclose(ours, theirs, atol=5e-6)
+    assert np.abs(ours - connect(made).apply(RGB)).max() > 1e-3
 
 
 TO_DEVICES = {
