@@ -14,7 +14,7 @@ from brdfc.calc.curves import (
     SampledSegment,
     SegmentedCurve,
 )
-from brdfc.engine.calculator_curves import between
+from brdfc.engine.calculator_curves import cell, line
 from brdfc.engine.kernels import Values
 
 Wide = NDArray[np.float64]
@@ -39,7 +39,8 @@ def _sampled(curve: SampledCurve, x: Values) -> Values:
         )
     below = slopes[0] * x + (points[0] - slopes[0] * first)
     above = slopes[1] * x + (points[-1] - slopes[1] * last)
-    inside = between(points.__getitem__, len(points) - 1, (x - first) / span * steps)
+    lower, upper, part = cell((x - first) / span * steps, len(points) - 1)
+    inside = line(points[lower], points[upper], part)
     finite = np.where(x < first, below, np.where(x > last, above, inside))
     # The newest release gives 1 or 0 for what is not finite, whatever the curve; older ones differ.
     return np.where(np.isfinite(x), finite, (x > 0).astype(np.float32))
@@ -64,7 +65,8 @@ def _segment(curve: SegmentedCurve, k: int, x: Values) -> Values:
     start, end = np.float32(curve.breaks[k - 1]), np.float32(curve.breaks[k])
     values = np.concatenate([[_at_end(curve, k - 1)], segment.samples.values])
     points, count = values.astype(np.float32), segment.samples.count
-    return between(points.__getitem__, count, (x - start) / (end - start) * np.float32(count))
+    lower, upper, part = cell((x - start) / (end - start) * np.float32(count), count)
+    return line(points[lower], points[upper], part)
 
 
 def _at_end(curve: SegmentedCurve, k: int) -> np.float32:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -68,10 +68,15 @@ def changes_nothing(element: Element) -> bool:
 def _curve(curve: Curve, x: Values, setting: Setting, calculate: Calculate) -> Values:
     if not isinstance(curve, CalculatorCurve):
         return apply_curve(curve, x)
-    program = curve.calculator
+    program, variables = curve.calculator, setting.environment
+    differing = [variable for variable in variables.values() if variable.ndim]
+    (pixels,) = np.broadcast_shapes((1,), x.shape, *(v.shape for v in differing))
 
     def values(places: Values) -> Values:
-        return calculate(program, [places], setting)[0]
+        rows = len(places)
+        here = {name: np.tile(v, rows) if v.ndim else v for name, v in variables.items()}
+        (found,) = calculate(program, [places.ravel()], replace(setting, environment=here))
+        return np.broadcast_to(found, places.size).reshape(places.shape)
 
-    same = all(variable.ndim == 0 for variable in setting.environment.values())
-    return apply_calculator_curve(curve, x, values, same)
+    found = apply_calculator_curve(curve, np.broadcast_to(x, pixels), values, not differing)
+    return found if x.ndim or differing else found[0]

@@ -232,7 +232,7 @@ def test_many_curves_cannot_share_bytes_in_part():
 
 
 @settings(max_examples=200, deadline=None)
-@given(st.sampled_from([*CURVE_SETS, *TABLES[:12]]), st.data())
+@given(st.sampled_from([*CURVE_SETS, *TABLES[:12], *TINTS[::4], *APPEARANCE.values()]), st.data())
 def test_mutations(element, data):
     """Any bytes changed or cut off: an element that runs, or a ProgramError."""
     encoded = bytearray(encode_element(element))

@@ -205,13 +205,12 @@ def test_tables_are_interpolated_as_is_said(tmp_path: Path) -> None:
     paths = pair.save(tmp_path / "corner_mvis.icc")
     image = tmp_path / "in.tif"
     tifffile.imwrite(image, np.full((2, 2, 3), (0.5, 0.75, 0.25), np.float32), photometric="rgb")
-    for given, expected in (([], 0.09375), (["--interpolation", "tetrahedral"], 0.25)):
-        done = run("eval", *paths, "--pixel", "0.5,0.75,0.25", *given)
-        assert done.stdout.split() == [str(expected)] * 3
-        done = run("apply", *paths, image, "-o", tmp_path / "out.tif", *given)
-        assert done.returncode == 0, done.stderr
-        assert (tifffile.imread(tmp_path / "out.tif") == np.float32(expected)).all()
-    assert run("eval", *paths, "--pixel", "0,0,0", "--interpolation", "cubic").returncode == 2
+    given = ["--interpolation", "tetrahedral"]
+    assert run("eval", *paths, "--pixel", "0.5,0.75,0.25").stdout == "0.09375 0.09375 0.09375\n"
+    assert run("eval", *paths, "--pixel", "0.5,0.75,0.25", *given).stdout == "0.25 0.25 0.25\n"
+    done = run("apply", *paths, image, "-o", tmp_path / "out.tif", *given)
+    assert done.returncode == 0, done.stderr
+    assert (tifffile.imread(tmp_path / "out.tif") == np.float32(0.25)).all()
 
 
 def test_eval_prints_nine_digits_a_line_a_pixel(ward: tuple[Path, Path]) -> None:

@@ -30,6 +30,7 @@ from calc.calc_elements import (
 )
 from engine_reference import encoded, judged, ulps
 
+from brdfc.calc.calculator_curves import CalculatorCurve
 from brdfc.calc.curves import CurveSet, SegmentedCurve
 from brdfc.calc.program import Op, Program
 from brdfc.calc.samples import Samples, Storage
@@ -167,12 +168,27 @@ def test_calculator_curves(curve):
         np.testing.assert_array_equal(run(CurveSet((curve,)), few[:, None], {})[:, 0], again)
 
 
-def test_a_calculator_curve_of_a_variable_for_each_pixel():
-    curves = CurveSet((calculated("env(inci) pop mul", 5, extend=True),))
+@pytest.mark.parametrize("size", [3, 6, 7, 900])
+def test_a_calculator_curve_of_a_variable_for_each_pixel(size):
+    curves = CurveSet((calculated("env(inci) pop mul cos", size, extend=True),))
     x, gains = RANDOM.uniform(-1, 2, (2, 50)).astype(np.float32)
     found = run(curves, x[:, None], {"inci": gains})
     for i in range(50):
         np.testing.assert_array_equal(found[i], run(curves, [[x[i]]], {"inci": gains[i]})[0])
+    constant = Program(1, 1, assemble("{ 0.3 curv out }"), (curves,))
+    found = run(constant, x[:, None], {"inci": gains})
+    np.testing.assert_array_equal(found[7], run(constant, [[0]], {"inci": gains[7]})[0])
+
+
+@pytest.mark.parametrize("differing", [False, True])
+def test_curves_in_calculators_in_curves_take_what_was_counted(differing):
+    """Eighteen levels of two samples each: near the limit of what a pixel may take."""
+    curves = CurveSet((calculated("env(inci) pop add", 2),))
+    for _ in range(17):
+        program = Program(1, 1, assemble("{ in curv out }"), (curves,))
+        curves = CurveSet((CalculatorCurve(2, 0.0, 1.0, program),))
+    given = {"inci": [0.25, 0.5] if differing else 0.25}
+    assert run(curves, [[0.0], [0.5]], given).tolist()[0] == [0.25]
 
 
 # ---------------------------------------------------------------- against the reference engine
