@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 
 from brdfc.calc.binary import encode_element
@@ -11,7 +11,7 @@ from brdfc.calc.curves import CurveSet
 from brdfc.calc.price import operations, price
 from brdfc.calc.program import Element, Program
 from brdfc.calc.tables import LookupTable
-from brdfc.calc.verify import portability, verify
+from brdfc.calc.verify import verify
 from brdfc.cmm import reference
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import (
@@ -22,10 +22,11 @@ from brdfc.icc.signatures import (
     space_text,
 )
 from brdfc.icc.texts import Dictionary, LocalizedText, Utf8Array
-from brdfc.icc.types import NumberArray, Pipeline, Structure, Tag
+from brdfc.icc.types import NumberArray, Pipeline
 from brdfc.icc.validate import validate
 from brdfc.inspected import Calculator, Channel, Inspection, Part, Transform, Variable
 from brdfc.profiles.metadata import describe, value_text
+from brdfc.programs import Placed, calculators, pipelines
 from brdfc.source.errors import BrdfcError, ProgramError
 from brdfc.xml.names import signature_name
 
@@ -44,10 +45,8 @@ KINDS = {
 
 def prove(profile: Profile, path: str) -> None:
     """Prove every program of a profile safe to run; ProgramError names the tag and operation."""
-    for signature, pipeline in _pipelines(profile.tags):
-        for index, element in enumerate(pipeline.elements):
-            if isinstance(element, Program):
-                verify(element, f"{path}, tag '{signature}', element {index}")
+    for placed in calculators(profile):
+        verify(placed.program, f"{path}, {placed.where}")
 
 
 def inspect(path: str | Path, engine: bool = True) -> Inspection:
@@ -81,18 +80,6 @@ def inspect(path: str | Path, engine: bool = True) -> Inspection:
         metadata=dict(metadata.entries) if isinstance(metadata, Dictionary) else {},
         verdicts=_verdicts(profile, transforms, path if engine else None),
     )
-
-
-def _pipelines(tags: Mapping[str, Tag]) -> Iterator[tuple[str, Pipeline]]:
-    """Transforms by their tags; those in a structure, once, as `bcp0.xfrm`."""
-    seen: set[int] = set()
-    for signature, tag in tags.items():
-        if isinstance(tag, Pipeline):
-            yield signature, tag
-        elif isinstance(tag, Structure) and id(tag) not in seen:
-            seen.add(id(tag))
-            for member, pipeline in _pipelines(tag.members):
-                yield f"{signature}.{member}", pipeline
 
 
 def _spaces(profile: Profile) -> dict[str, str]:
@@ -149,22 +136,23 @@ def _variables(profile: Profile, transforms: tuple[Transform, ...]) -> tuple[Var
 
 def _transforms(profile: Profile) -> Iterator[Transform]:
     first: dict[int, str] = {}
-    for signature, tag in _pipelines(profile.tags):
+    for signature, tag in pipelines(profile.tags):
         kind = TAGS.get(signature[:4])
         name = kind.name if kind else ""
         same = first.setdefault(id(tag), signature)
         shared = same if same != signature else None
-        parts = () if shared else tuple(_part(e, signature, i) for i, e in enumerate(tag.elements))
+        places = enumerate(tag.elements if shared is None else ())
+        parts = tuple(_part(profile, signature, index, e) for index, e in places)
         yield Transform(signature, name, tag.inputs, tag.outputs, parts, shared)
 
 
-def _part(element: Element, signature: str, index: int) -> Part:
+def _part(profile: Profile, tag: str, index: int, element: Element) -> Part:
     kind = KINDS.get(element.signature, f"'{element.signature}'")
     size = len(encode_element(element))
     calculator = None
     inside: dict[str, int] = {}
     if isinstance(element, Program):
-        calculator = _calculator(element, f"tag '{signature}', element {index}")
+        calculator = _calculator(Placed(element, tag, index, profile))
         for inner in element.elements:
             name = KINDS.get(inner.signature, f"'{inner.signature}'")
             inside[name] = inside.get(name, 0) + 1
@@ -181,10 +169,11 @@ def _size(element: Element) -> str:
     return ""
 
 
-def _calculator(program: Program, where: str) -> Calculator:
+def _calculator(placed: Placed) -> Calculator:
+    program = placed.program
     count, kinds = operations(program), census(program.body)
     try:
-        facts = verify(program, where)
+        facts = verify(program, placed.where)
     except ProgramError as error:
         return Calculator(count, kinds, refused=str(error))
     return Calculator(
@@ -194,7 +183,7 @@ def _calculator(program: Program, where: str) -> Calculator:
         facts.stack,
         facts.temporaries,
         tuple(v for v in facts.variables if v not in ("true", "ndef")),
-        remarks=tuple(portability(program)),
+        remarks=tuple(placed.remarks),
     )
 
 

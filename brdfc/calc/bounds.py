@@ -72,8 +72,9 @@ def _mul(a: Interval, b: Interval) -> Interval:
 
 
 def _pow(a: Interval, b: Interval) -> Interval:
-    """A negative base has a power where the exponent is a whole number."""
-    if a.low >= 0:
+    """A negative base has a power where the exponent is a whole number; that of -0 may be minus
+    infinity."""
+    if a.low >= 0 and (a.low > 0 or b.low >= 0):
         return RULES["pow"](a, b)
     if not (b.low == b.high and b.low.is_integer()) or a.undefined or b.undefined:
         return UNKNOWN

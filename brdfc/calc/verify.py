@@ -12,7 +12,6 @@ from functools import reduce
 from operator import and_
 
 from brdfc.calc.operators import Operand
-from brdfc.calc.portability import portability
 from brdfc.calc.program import (
     MAX_NESTING,
     Block,
@@ -25,8 +24,6 @@ from brdfc.calc.program import (
 )
 from brdfc.calc.tables import LookupTable
 from brdfc.source.errors import ProgramError
-
-__all__ = ["Facts", "portability", "verify"]
 
 STACK_LIMIT = 65535
 WORK_LIMIT = 10_000_000

@@ -8,10 +8,11 @@ from hypothesis import given, settings
 
 from brdfc.calc.binary import decode_element, encode_element
 from brdfc.calc.operators import OPERATORS, Operand
+from brdfc.calc.portability import portability
 from brdfc.calc.price import operations
 from brdfc.calc.program import Matrix, Op, OpaqueElement, Program, encoded_length
 from brdfc.calc.text import assemble
-from brdfc.calc.verify import Facts, portability, verify
+from brdfc.calc.verify import Facts, verify
 from brdfc.source.errors import ProgramError
 
 MATRIX = Matrix(2, 1, (1.0, 2.0), (0.0,))
