@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from brdfc.calc.price import operations, price
-from brdfc.calc.verify import verify
 from brdfc.cmm import reference
 from brdfc.compiler import compile_model
 from brdfc.icc.profile import Profile
@@ -21,7 +20,7 @@ from brdfc.laws.claims import Claim, LawResult, shown
 from brdfc.laws.examine import examine
 from brdfc.laws.reflectance import Reflectance, in_full_geometry
 from brdfc.profiles.metadata import describe
-from brdfc.programs import Placed, calculators
+from brdfc.programs import Examined, distinct_transforms, examined
 from brdfc.source.errors import BrdfcError
 from brdfc.symbolic.build import build
 from brdfc.xml.profile import encoded, load_xml
@@ -148,8 +147,10 @@ def check_profile(path: str | Path) -> Iterator[Finding]:
         yield Finding(finding.severity, f"{finding.tag or 'profile'}: {finding.message}")
     if not findings:
         yield Finding(OK, "rules: all required tags, channel counts and names agree")
-    for placed in calculators(profile):
-        yield from _program(placed)
+    for signature, pipeline in distinct_transforms(profile):
+        for found in examined(profile, signature, pipeline):
+            if found is not None:
+                yield from _program(found)
     named = [*describe(profile, "channel"), *describe(profile, "env")]
     for d in named:
         kind = f"variable ({d.signature})" if d.signature else "channel"
@@ -157,12 +158,10 @@ def check_profile(path: str | Path) -> Iterator[Finding]:
     yield _reference_verdict(path)
 
 
-def _program(placed: Placed) -> Iterator[Finding]:
-    program, where = placed.program, placed.where
-    try:
-        facts = verify(program, where)
-    except BrdfcError as error:
-        yield Finding(ERROR, str(error))
+def _program(found: Examined) -> Iterator[Finding]:
+    program, where, facts = found.program, found.where, found.facts
+    if facts is None:
+        yield Finding(ERROR, found.refused or f"{where}: refused")
         return
     yield Finding(
         OK,
@@ -170,7 +169,7 @@ def _program(placed: Placed) -> Iterator[Finding]:
         f"{price(program):.0f} ns a pixel, stack {facts.stack}, temporaries "
         f"{facts.temporaries}, variables {' '.join(facts.variables) or 'none'}",
     )
-    remarks = placed.remarks
+    remarks = found.remarks
     for remark in remarks[:MOST_REMARKS]:
         yield Finding(WARNING, remark)
     if len(remarks) > MOST_REMARKS:

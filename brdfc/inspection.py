@@ -26,8 +26,8 @@ from brdfc.icc.types import NumberArray, Pipeline
 from brdfc.icc.validate import validate
 from brdfc.inspected import Calculator, Channel, Inspection, Part, Transform, Variable
 from brdfc.profiles.metadata import describe, value_text
-from brdfc.programs import Placed, calculators, pipelines
-from brdfc.source.errors import BrdfcError, ProgramError
+from brdfc.programs import Examined, distinct_transforms, examined, place, transforms
+from brdfc.source.errors import BrdfcError
 from brdfc.xml.names import signature_name
 
 KINDS = {
@@ -45,8 +45,10 @@ KINDS = {
 
 def prove(profile: Profile, path: str) -> None:
     """Prove every program of a profile safe to run; ProgramError names the tag and operation."""
-    for placed in calculators(profile):
-        verify(placed.program, f"{path}, {placed.where}")
+    for signature, pipeline in distinct_transforms(profile):
+        for index, element in enumerate(pipeline.elements):
+            if isinstance(element, Program):
+                verify(element, f"{path}, {place(signature, index)}")
 
 
 def inspect(path: str | Path, engine: bool = True) -> Inspection:
@@ -136,23 +138,22 @@ def _variables(profile: Profile, transforms: tuple[Transform, ...]) -> tuple[Var
 
 def _transforms(profile: Profile) -> Iterator[Transform]:
     first: dict[int, str] = {}
-    for signature, tag in pipelines(profile.tags):
+    for signature, tag in transforms(profile.tags):
         kind = TAGS.get(signature[:4])
         name = kind.name if kind else ""
         same = first.setdefault(id(tag), signature)
         shared = same if same != signature else None
-        places = enumerate(tag.elements if shared is None else ())
-        parts = tuple(_part(profile, signature, index, e) for index, e in places)
+        parts = () if shared else tuple(map(_part, tag.elements, examined(profile, signature, tag)))
         yield Transform(signature, name, tag.inputs, tag.outputs, parts, shared)
 
 
-def _part(profile: Profile, tag: str, index: int, element: Element) -> Part:
+def _part(element: Element, found: Examined | None) -> Part:
     kind = KINDS.get(element.signature, f"'{element.signature}'")
     size = len(encode_element(element))
     calculator = None
     inside: dict[str, int] = {}
-    if isinstance(element, Program):
-        calculator = _calculator(Placed(element, tag, index, profile))
+    if isinstance(element, Program) and found is not None:
+        calculator = _calculator(element, found)
         for inner in element.elements:
             name = KINDS.get(inner.signature, f"'{inner.signature}'")
             inside[name] = inside.get(name, 0) + 1
@@ -169,13 +170,10 @@ def _size(element: Element) -> str:
     return ""
 
 
-def _calculator(placed: Placed) -> Calculator:
-    program = placed.program
-    count, kinds = operations(program), census(program.body)
-    try:
-        facts = verify(program, placed.where)
-    except ProgramError as error:
-        return Calculator(count, kinds, refused=str(error))
+def _calculator(program: Program, found: Examined) -> Calculator:
+    count, kinds, facts = operations(program), census(program.body), found.facts
+    if facts is None:
+        return Calculator(count, kinds, refused=found.refused)
     return Calculator(
         count,
         kinds,
@@ -183,7 +181,7 @@ def _calculator(placed: Placed) -> Calculator:
         facts.stack,
         facts.temporaries,
         tuple(v for v in facts.variables if v not in ("true", "ndef")),
-        remarks=tuple(placed.remarks),
+        remarks=tuple(found.remarks),
     )
 
 

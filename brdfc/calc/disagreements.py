@@ -14,8 +14,9 @@ from brdfc.calc.bounds import BINARY, FOLDED, UNARY, least_size
 from brdfc.symbolic.bounds import WHOLE_LIMIT
 from brdfc.symbolic.intervals import Interval
 
-SINGULAR = 1e-8
-"""The determinant below which the newer release solves no system."""
+SINGULAR, LEAST_DIVISOR = 1e-8, 1e-12
+"""The determinant below which the newer release solves no system, whatever its scale, and the
+divisor below which `mod` is 0 there."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,10 @@ def _shown(a: Interval) -> str:
 
 def _zero_divisor(_x: Interval, y: Interval) -> bool:
     return y.has_zero
+
+
+def _least_divisor(_x: Interval, y: Interval) -> bool:
+    return least_size(y) < LEAST_DIVISOR
 
 
 def _not_finite(*operands: Interval) -> bool:
@@ -107,7 +112,7 @@ DISAGREEMENTS = (
         "an infinity or NaN", "0", "0", "1 0 div", 0.0,
     ),
     Disagreement(
-        ("mod",), _zero_divisor, "the divisor may be 0",
+        ("mod",), _least_divisor, "the divisor may be 0, or below 1e-12",
         "what is divided, or any number", "0", "0", "7 0 mod", 0.0,
     ),
     Disagreement(
@@ -159,6 +164,10 @@ DISAGREEMENTS = (
         ("clut",), _outside_table, "an input may be outside 0..1 or NaN",
         "what lies beside the table in memory", "the end of the table", "the end of the table",
         "", None,
+    ),
+    Disagreement(
+        ("curv",), _not_finite, "an input of a sampled curve may be infinite or NaN",
+        "other numbers", "1 for an infinity, else 0", "the same", "", None,
     ),
 )  # fmt: skip
 """Every row, an operator's gravest first."""

@@ -32,10 +32,10 @@ from brdfc.calc.moves import rearranged
 from brdfc.calc.operators import Operand
 from brdfc.calc.paths import NOTHING_KNOWN, Effort, State, Value
 from brdfc.calc.program import Block, Element, If, Op, Program, Select, encoded_length, heads
-from brdfc.calc.samples import Samples
+from brdfc.calc.reach import reach
 from brdfc.calc.tables import LookupTable
 from brdfc.symbolic.bounds import TRUTH
-from brdfc.symbolic.intervals import Interval, outward
+from brdfc.symbolic.intervals import Interval
 
 MOST_FOLLOWED = 1 << 18
 """Values, popped and pushed: those of the longest program that is not made of wide vectors."""
@@ -82,29 +82,13 @@ class Follower:
         if isinstance(element, Program):
             found = self.follow(element, [value.bounds for value in operands])
             return [Value(interval) for interval in found]
+        return [Value(interval) for interval in self.reach(element)]
+
+    def reach(self, element: Element) -> list[Interval]:
+        """What an element that is no calculator can give."""
         if id(element) not in self._ranges:
-            self._ranges[id(element)] = _reach(element)
-        return [Value(interval) for interval in self._ranges[id(element)]]
-
-
-def _reach(element: Element) -> list[Interval]:
-    """What an element that is no calculator can give, whatever it is given."""
-    if isinstance(element, LookupTable):
-        return [_of_samples(element.samples)] * element.outputs
-    if isinstance(element, CurveSet):
-        return [
-            _of_samples(curve.samples)
-            if isinstance(curve, SampledCurve) and not curve.extend
-            else UNKNOWN
-            for curve in element.curves
-        ]
-    return [UNKNOWN] * element.outputs
-
-
-def _of_samples(samples: Samples) -> Interval:
-    """Between samples lies what lies between their values."""
-    values = samples.values
-    return outward(float(values.min()), float(values.max()))
+            self._ranges[id(element)] = reach(element)
+        return self._ranges[id(element)]
 
 
 Way = tuple[Block, bool, Callable[[], None]]
@@ -177,6 +161,10 @@ class _Run:
             operands = state.pop(element.inputs)
             if isinstance(element, LookupTable):
                 self.compare("clut", ((value.bounds,) for value in operands))
+            elif isinstance(element, CurveSet):
+                pairs = zip(operands, element.curves, strict=True)
+                sampled = ((v.bounds,) for v, curve in pairs if isinstance(curve, SampledCurve))
+                self.compare("curv", sampled)
             state.push(self.follower.element(element, operands))
             return
         assert operator.effect is not None

@@ -52,13 +52,16 @@ class _Branch:
 
 @dataclass(slots=True)
 class Left:
-    """What a branch leaves: the stack above a depth, and temporaries; each with its bounds there,
-    as a condition that narrows them holds in the branch only."""
+    """What a branch leaves: the stack above a depth, and temporaries. bounds: of values whose
+    bounds are narrower in the branch than outside."""
 
     mark: int
     pushed: list[Value]
-    bounds: list[Interval]
-    stored: dict[int, tuple[Value, Interval]]
+    stored: dict[int, Value]
+    bounds: dict[Value, Interval]
+
+    def of(self, value: Value) -> Interval:
+        return self.bounds.get(value, value.bounds)
 
 
 class State:
@@ -125,13 +128,11 @@ class State:
     def leave(self) -> Left:
         """A branch ends: all is as before it."""
         branch = self._branches.pop()
-        pushed = self.stack[branch.mark :]
-        stored = {i: self.temporaries[i] for i in branch.stored}
         left = Left(
             branch.mark,
-            pushed,
-            [value.bounds for value in pushed],
-            {i: (value, value.bounds) for i, value in stored.items()},
+            self.stack[branch.mark :],
+            {i: self.temporaries[i] for i in branch.stored},
+            {value: value.bounds for value, _ in branch.narrowed},
         )
         self.stack[branch.mark :] = reversed(branch.taken)
         self.temporaries.update(branch.stored)
@@ -146,36 +147,28 @@ class State:
         if self.forgotten:
             return
         under = self.pop(len(self.stack) - mark)
-        stacks = []
-        for path in paths:
-            kept = under[: path.mark - mark]
-            ends = [value.bounds for value in kept] + path.bounds
-            stacks.append(list(zip(kept + path.pushed, ends, strict=True)))
+        stacks = [under[: path.mark - mark] + path.pushed for path in paths]
         depth = min(map(len, stacks))
         if any(len(stack) > depth for stack in stacks):  # what lies beneath is not one value
             self._effort.spend(mark)
             self.pop(mark)
         tops = [stack[len(stack) - depth :] for stack in stacks]
-        self.push([_joined(values) for values in zip(*tops, strict=True)])
-        self._join_temporaries(paths)
-
-    def _join_temporaries(self, paths: Sequence[Left]) -> None:
-        found: dict[int, list[tuple[Value, Interval]]] = {}
-        for path in paths:
-            for index, stored in path.stored.items():
-                found.setdefault(index, []).append(stored)
-        for index, values in found.items():
-            if len(values) < len(paths):  # on some path it stayed as it was
-                (old,) = self.get(index, 1)
-                values.append((old, old.bounds))
-            self.put(index, [_joined(values)])
+        self.push([_joined(values, paths) for values in zip(*tops, strict=True)])
+        for index in dict.fromkeys(i for path in paths for i in path.stored):
+            self._effort.spend(len(paths))
+            if self.forgotten:
+                return
+            old = self.temporaries.get(index, NOTHING_KNOWN)
+            values = [path.stored.get(index, old) for path in paths]
+            self.put(index, [_joined(values, paths)])
 
 
-def _joined(values: Sequence[tuple[Value, Interval]]) -> Value:
+def _joined(values: Sequence[Value], paths: Sequence[Left]) -> Value:
     """One value on all paths stays what it is."""
-    first = values[0][0]
-    if all(value is first for value, _ in values):
+    first = values[0]
+    if all(value is first for value in values):
         return first
-    if any(value is NOTHING_KNOWN for value, _ in values):
+    if any(value is NOTHING_KNOWN for value in values):
         return NOTHING_KNOWN
-    return Value(either(*(bounds for _, bounds in values)), "either")
+    bounds = [path.of(value) for value, path in zip(values, paths, strict=True)]
+    return Value(either(*bounds), "either")

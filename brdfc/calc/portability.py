@@ -29,12 +29,13 @@ def portability(
     """
     follower = Follower(variables or {})
     follower.follow(program, inputs)
-    return list(_listed(program, where, follower.findings))
+    return list(listed(program, where, follower.findings))
 
 
-def _listed(
+def listed(
     program: Program, where: str, by_value: Mapping[int, Mapping[int, str]]
 ) -> Iterator[str]:
+    """Findings in the file's order. by_value: those of a Follower."""
     found = [*_standing(program.body, 0), *by_value.get(id(program), {}).items()]
     for index, finding in sorted(found):
         yield f"{where}op {index}: {finding}"
@@ -42,7 +43,7 @@ def _listed(
     for number, element in enumerate(program.elements):
         if isinstance(element, Program) and id(element) not in seen:
             seen.add(id(element))
-            yield from _listed(element, f"{where}sub-element {number}, ", by_value)
+            yield from listed(element, f"{where}sub-element {number}, ", by_value)
 
 
 def _standing(block: Block, index: int) -> Iterator[tuple[int, str]]:
