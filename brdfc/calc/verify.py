@@ -11,7 +11,8 @@ from dataclasses import dataclass, field, replace
 from functools import reduce
 from operator import and_
 
-from brdfc.calc.operators import Operand
+from brdfc.calc.curves import CurveSet
+from brdfc.calc.operators import CALLED_KINDS, Operand
 from brdfc.calc.program import (
     MAX_NESTING,
     Block,
@@ -27,18 +28,9 @@ from brdfc.source.errors import ProgramError
 
 STACK_LIMIT = 65535
 WORK_LIMIT = 10_000_000
-"""Values popped and pushed for one pixel. A shared sub-element that calls a shared one, and so on,
-lets a file of a few hundred bytes stand for more work than there is time."""
-
-_KIND_OF_ELEMENT = {
-    "curv": ("cvst",),
-    "mtx": ("matf",),
-    "clut": ("clut", "xclt"),
-    "tint": ("tint",),
-    "tJab": ("XtoJ",),
-    "fJab": ("JtoX",),
-    "calc": ("calc",),
-}
+"""Values popped and pushed for one pixel, and kept aside where pixels may go different ways. A
+shared sub-element that calls a shared one, and so on, lets a file of a few hundred bytes stand for
+more work than there is time."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +39,8 @@ class Facts:
 
     stack: the greatest depth; temporaries: how many are in use; variables: signatures read, those
     of called calculators included. held: values a pixel keeps at once (stack, temporaries,
-    channels), and work: values popped and pushed on the dearest path, both with everything that is
-    called. nesting: how deep blocks and calls stand in each other.
+    channels), and work: values popped, pushed and kept aside on the dearest path, both with
+    everything that is called. nesting: how deep blocks and calls stand in each other.
     """
 
     stack: int
@@ -62,13 +54,14 @@ class Facts:
 @dataclass
 class _State:
     """What holds on every path to a point: depth (least and greatest), work so far (greatest),
-    and bit sets of the temporaries and outputs that have been written."""
+    bit sets of the temporaries and outputs that have been written, and how many temporaries."""
 
     least: int = 0
     greatest: int = 0
     work: int = 0
     temporaries: int = 0
     outputs: int = 0
+    written: int = 0
 
 
 def _joined(paths: list[_State]) -> _State:
@@ -78,6 +71,7 @@ def _joined(paths: list[_State]) -> _State:
         max(path.work for path in paths),
         reduce(and_, (path.temporaries for path in paths)),
         reduce(and_, (path.outputs for path in paths)),
+        min(path.written for path in paths),
     )
 
 
@@ -100,20 +94,26 @@ class _Checker:
         start = self.deepest = self.level
         state = _State()
         self.block(self.program.body, state)
-        missing = ((1 << self.program.outputs) - 1) & ~state.outputs
+        missing = ~state.outputs & (1 << self.program.outputs) - 1
         if missing:
             raise ProgramError(
                 f"output {_lowest(missing)} is not written on every path", where=self.where
             )
-        channels = self.program.inputs + self.program.outputs
+        for index, element in enumerate(self.program.elements):
+            if isinstance(element, Program):  # the reference engine asks it of uncalled ones too
+                self.proven(element, index)
         return Facts(
             self.peak,
             self.temporaries,
             tuple(sorted(self.variables)),
-            self.peak + self.temporaries + channels + self.held_by_called,
+            self.peak + self.temporaries + self.channels + self.held_by_called,
             state.work,
             self.deepest - start,
         )
+
+    @property
+    def channels(self) -> int:
+        return self.program.inputs + self.program.outputs
 
     def fail(self, message: str) -> ProgramError:
         return ProgramError(message, where=f"{self.where}, op {self.index}")
@@ -136,6 +136,9 @@ class _Checker:
         self.take(state, 1, 0, "if" if isinstance(instruction, If) else "sel")
         self.enter(1)
         bodies = instruction.bodies
+        # An engine splits the state by the way that each pixel goes.
+        kept = state.greatest + state.written + self.channels
+        self.work(state, kept * (len(bodies) + (not instruction.complete)))
         self.index += heads(instruction)
         self.level += 1
         # Where there is no `else` or `dflt`, none of the bodies may run.
@@ -165,30 +168,34 @@ class _Checker:
         self.take(state, popped, pushed, op.name)
 
     def span(self, op: Op, state: _State) -> None:
-        bits = ((1 << op.second) - 1) << op.first
-        end = op.first + op.second
+        end, mask = op.first + op.second, (1 << op.second) - 1
         limit = {"in": self.program.inputs, "out": self.program.outputs}.get(op.name, 65536)
         if end > limit:
             what = "temporary" if op.name.startswith("t") else "channel"
             raise self.fail(f"'{op.name}' reaches {what} {end - 1}; there are {limit}")
         if op.name == "out":
-            state.outputs |= bits
-        elif op.name in ("tput", "tsav"):
-            state.temporaries |= bits
+            state.outputs |= mask << op.first
+        elif op.name != "in" and (unwritten := ~(state.temporaries >> op.first) & mask):
+            if op.name == "tget":
+                which = f"temporary {op.first + _lowest(unwritten)}"
+                raise self.fail(f"{which} is read, and on some path nothing was written")
+            state.temporaries |= unwritten << op.first
+            state.written += unwritten.bit_count()
             self.temporaries = max(self.temporaries, end)
-        elif op.name == "tget" and bits & ~state.temporaries:
-            missing = _lowest(bits & ~state.temporaries)
-            raise self.fail(f"temporary {missing} is read, and on some path nothing was written")
 
     def take(self, state: _State, popped: int, pushed: int, name: str) -> None:
         if state.least < popped:
             raise self.fail(f"'{name}' needs {popped} values, {state.least} are on the stack")
         state.least += pushed - popped
         state.greatest += pushed - popped
-        state.work += 1 + popped + pushed
-        self.peak = max(self.peak, state.greatest)
-        if self.peak > STACK_LIMIT:
-            raise self.fail(f"the stack grows beyond {STACK_LIMIT} values")
+        if state.greatest > self.peak:
+            self.peak = state.greatest
+            if self.peak > STACK_LIMIT:
+                raise self.fail(f"the stack grows beyond {STACK_LIMIT} values")
+        self.work(state, 1 + popped + pushed)
+
+    def work(self, state: _State, values: int) -> None:
+        state.work += values
         if state.work > WORK_LIMIT:
             raise self.fail(f"a pixel may take more than {WORK_LIMIT:,} steps up to here")
 
@@ -197,7 +204,7 @@ class _Checker:
         if op.first >= len(elements):
             raise self.fail(f"'{op.name}' calls sub-element {op.first}; there are {len(elements)}")
         element = elements[op.first]
-        kinds = _KIND_OF_ELEMENT.get(op.name)
+        kinds = CALLED_KINDS.get(op.name)
         if kinds is not None and element.signature not in kinds:
             raise self.fail(
                 f"'{op.name}' needs a '{kinds[0]}' element, sub-element {op.first} is a "
@@ -209,17 +216,22 @@ class _Checker:
         """The work a call takes; a calculator is proven first."""
         if isinstance(element, LookupTable):  # the corners of a cell, each with its weight
             return (element.inputs + element.outputs) << element.inputs
+        if isinstance(element, CurveSet):
+            return element.inputs
         if not isinstance(element, Program):
             return element.inputs * element.outputs
-        self.enter(1)
-        if id(element) not in self.known:
-            where = f"{self.where}, sub-element {op.first}"
-            self.known[id(element)] = _Checker(element, where, self.level + 1, self.known).run()
-        facts = self.known[id(element)]
+        facts = self.proven(element, op.first)
         self.enter(1 + facts.nesting)
         self.held_by_called = max(self.held_by_called, facts.held)
         self.variables.update(facts.variables)
         return facts.work
+
+    def proven(self, element: Program, index: int) -> Facts:
+        self.enter(1)
+        if id(element) not in self.known:
+            where = f"{self.where}, sub-element {index}"
+            self.known[id(element)] = _Checker(element, where, self.level + 1, self.known).run()
+        return self.known[id(element)]
 
 
 def _lowest(bits: int) -> int:

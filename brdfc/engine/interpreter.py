@@ -95,7 +95,8 @@ def run(
     """
     held = element.inputs + element.outputs
     if isinstance(element, Program):
-        held = verify(element).held
+        facts = verify(element)
+        held = facts.held * (1 + facts.nesting)  # a branch keeps the state aside
     step = max(1, min(BLOCK, HELD // max(1, held)))
     array = np.asarray(pixels, dtype=np.float32)
     if array.ndim == 0 or array.shape[-1] != element.inputs:

@@ -226,7 +226,7 @@ HOSTILE = {
     "calls": doubling(18),
     "a deep stack, and branches that do not balance": Program(
         1, 1,
-        (IN, Op("copy", 1, 60000), *((IN, If((IN, If((Op("pop", 1),))))) * 8000), IN, OUT),
+        (IN, Op("copy", 1, 1500), *((IN, If((IN, If((Op("pop", 1),))))) * 1400), IN, OUT),
     ),
     "a case for every operation": Program(
         1, 1,
@@ -249,7 +249,7 @@ def test_time_is_in_proportion(made):
 
 
 def test_beyond_what_is_followed_nothing_is_taken_for_granted():
-    wide = (IN, Op("copy", 1, 30000), *[Op("sin", 30000)] * 20, Op("pop", 30000))
+    wide = (IN, Op("copy", 1, 30000), *[Op("sin", 30000)] * 5, Op("pop", 30000))
     made = Program(1, 1, (*wide, *assemble("{ 1 2 div out }")))
     (finding,) = portability(made)
     assert "'div': the divisor may be 0" in finding
