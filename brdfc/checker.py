@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from brdfc.calc.curves import calculator_curves
-from brdfc.calc.portability import portability
 from brdfc.calc.price import operations, price
-from brdfc.calc.program import Element, Program
+from brdfc.calc.program import Element
 from brdfc.calc.verify import verify
 from brdfc.cmm import reference
 from brdfc.compiler import compile_model
 from brdfc.icc.profile import Profile
-from brdfc.icc.types import Pipeline
 from brdfc.icc.validate import validate
 from brdfc.judge.examples import check_examples
 from brdfc.lang.load import load, load_file
@@ -25,10 +23,14 @@ from brdfc.laws.claims import Claim, LawResult, shown
 from brdfc.laws.examine import examine
 from brdfc.laws.reflectance import Reflectance, in_full_geometry
 from brdfc.profiles.metadata import describe
+from brdfc.programs import Examined, distinct_transforms, examined, place
 from brdfc.source.errors import BrdfcError
 from brdfc.symbolic.build import build
+from brdfc.xml.profile import encoded, load_xml
 
 OK, WARNING, ERROR, OPEN = "ok", "warning", "error", "open"
+MOST_REMARKS = 20
+"""On the places of one program where releases may differ."""
 EXPECTED = ("reciprocal", "positive")
 """Laws of nature: a model that breaks one of them without a word deserves a warning."""
 
@@ -148,14 +150,13 @@ def check_profile(path: str | Path) -> Iterator[Finding]:
         yield Finding(finding.severity, f"{finding.tag or 'profile'}: {finding.message}")
     if not findings:
         yield Finding(OK, "rules: all required tags, channel counts and names agree")
-    for signature, tag in profile.tags.items():
-        if isinstance(tag, Pipeline):
-            for index, element in enumerate(tag.elements):
-                where = f"{signature}, element {index}"
-                if isinstance(element, Program):
-                    yield from _program(element, where)
-                elif calculator_curves(element):
-                    yield _curves(element, where)
+    for signature, pipeline in distinct_transforms(profile):
+        for found in examined(profile, signature, pipeline):
+            if found is not None:
+                yield from _program(found)
+        for index, element in enumerate(pipeline.elements):
+            if calculator_curves(element):
+                yield _curves(element, place(signature, index))
     named = [*describe(profile, "channel"), *describe(profile, "env")]
     for d in named:
         kind = f"variable ({d.signature})" if d.signature else "channel"
@@ -163,11 +164,10 @@ def check_profile(path: str | Path) -> Iterator[Finding]:
     yield _reference_verdict(path)
 
 
-def _program(program: Program, where: str) -> Iterator[Finding]:
-    try:
-        facts = verify(program, where)
-    except BrdfcError as error:
-        yield Finding(ERROR, str(error))
+def _program(found: Examined) -> Iterator[Finding]:
+    program, where, facts = found.program, found.where, found.facts
+    if facts is None:
+        yield Finding(ERROR, found.refused or f"{where}: refused")
         return
     yield Finding(
         OK,
@@ -175,8 +175,13 @@ def _program(program: Program, where: str) -> Iterator[Finding]:
         f"{price(program):.0f} ns a pixel, stack {facts.stack}, temporaries "
         f"{facts.temporaries}, variables {' '.join(facts.variables) or 'none'}",
     )
-    for remark in portability(program):
-        yield Finding(WARNING, f"{where}: {remark}")
+    remarks = found.remarks
+    for remark in remarks[:MOST_REMARKS]:
+        yield Finding(WARNING, remark)
+    if len(remarks) > MOST_REMARKS:
+        yield Finding(WARNING, f"{where}: {len(remarks) - MOST_REMARKS:,} such places more")
+    if not remarks:
+        yield Finding(OK, f"{where}: portable; no value depends on the engine's release")
 
 
 def _curves(element: Element, where: str) -> Finding:
@@ -203,8 +208,17 @@ def _reference_verdict(path: str | Path) -> Finding:
     )
 
 
+def check_xml(path: str | Path) -> Iterator[Finding]:
+    """The profile that an XML document describes."""
+    data = encoded(load_xml(path))
+    with tempfile.TemporaryDirectory() as folder:
+        written = Path(folder) / "checked.icc"
+        written.write_bytes(data)
+        yield from check_profile(written)
+
+
 def check(name: str) -> Iterator[Finding]:
-    """Check a profile, or a model by path or library name."""
-    function: Callable[[str], Iterator[Finding]]
-    function = check_profile if is_profile(name) else check_model
-    return function(name)
+    """Check a profile, as a file or in XML, or a model by path or library name."""
+    if is_profile(name):
+        return check_profile(name)
+    return check_xml(name) if name.endswith(".xml") else check_model(name)

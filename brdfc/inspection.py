@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 
 from brdfc.calc.binary import encode_element
@@ -12,7 +12,7 @@ from brdfc.calc.facts import Facts
 from brdfc.calc.price import operations, price
 from brdfc.calc.program import Element, Program
 from brdfc.calc.tables import LookupTable
-from brdfc.calc.verify import portability, verify
+from brdfc.calc.verify import verify
 from brdfc.cmm import reference
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import (
@@ -23,10 +23,11 @@ from brdfc.icc.signatures import (
     space_text,
 )
 from brdfc.icc.texts import Dictionary, LocalizedText, Utf8Array
-from brdfc.icc.types import NumberArray, Pipeline, Structure, Tag
+from brdfc.icc.types import NumberArray, Pipeline
 from brdfc.icc.validate import validate
 from brdfc.inspected import Calculator, Channel, Inspection, Part, Transform, Variable
 from brdfc.profiles.metadata import describe, value_text
+from brdfc.programs import Examined, distinct_transforms, examined, place, transforms
 from brdfc.source.errors import BrdfcError, ProgramError
 from brdfc.xml.names import signature_name
 
@@ -45,9 +46,9 @@ KINDS = {
 
 def prove(profile: Profile, path: str) -> None:
     """Prove every program of a profile safe to run; ProgramError names the tag and operation."""
-    for signature, pipeline in _pipelines(profile.tags):
+    for signature, pipeline in distinct_transforms(profile):
         for index, element in enumerate(pipeline.elements):
-            verify(element, f"{path}, tag '{signature}', element {index}")
+            verify(element, f"{path}, {place(signature, index)}")
 
 
 def inspect(path: str | Path, engine: bool = True) -> Inspection:
@@ -81,18 +82,6 @@ def inspect(path: str | Path, engine: bool = True) -> Inspection:
         metadata=dict(metadata.entries) if isinstance(metadata, Dictionary) else {},
         verdicts=_verdicts(profile, transforms, path if engine else None),
     )
-
-
-def _pipelines(tags: Mapping[str, Tag]) -> Iterator[tuple[str, Pipeline]]:
-    """Transforms by their tags; those in a structure, once, as `bcp0.xfrm`."""
-    seen: set[int] = set()
-    for signature, tag in tags.items():
-        if isinstance(tag, Pipeline):
-            yield signature, tag
-        elif isinstance(tag, Structure) and id(tag) not in seen:
-            seen.add(id(tag))
-            for member, pipeline in _pipelines(tag.members):
-                yield f"{signature}.{member}", pipeline
 
 
 def _spaces(profile: Profile) -> dict[str, str]:
@@ -152,22 +141,22 @@ def _variables(profile: Profile, transforms: tuple[Transform, ...]) -> tuple[Var
 
 def _transforms(profile: Profile) -> Iterator[Transform]:
     first: dict[int, str] = {}
-    for signature, tag in _pipelines(profile.tags):
+    for signature, tag in transforms(profile.tags):
         kind = TAGS.get(signature[:4])
         name = kind.name if kind else ""
         same = first.setdefault(id(tag), signature)
         shared = same if same != signature else None
-        parts = () if shared else tuple(_part(e, signature, i) for i, e in enumerate(tag.elements))
+        parts = () if shared else tuple(map(_part, tag.elements, examined(profile, signature, tag)))
         yield Transform(signature, name, tag.inputs, tag.outputs, parts, shared)
 
 
-def _part(element: Element, signature: str, index: int) -> Part:
+def _part(element: Element, found: Examined | None) -> Part:
     kind = KINDS.get(element.signature, f"'{element.signature}'")
     size = len(encode_element(element))
     calculator = None
     inside: dict[str, int] = {}
-    if isinstance(element, Program):
-        calculator = _calculator(element, f"tag '{signature}', element {index}")
+    if isinstance(element, Program) and found is not None:
+        calculator = _calculator(element, found)
         for inner in element.elements:
             name = KINDS.get(inner.signature, f"'{inner.signature}'")
             inside[name] = inside.get(name, 0) + 1
@@ -184,12 +173,10 @@ def _size(element: Element) -> str:
     return ""
 
 
-def _calculator(program: Program, where: str) -> Calculator:
-    count, kinds = operations(program), census(program.body)
-    try:
-        facts = verify(program, where)
-    except ProgramError as error:
-        return Calculator(count, kinds, refused=str(error))
+def _calculator(program: Program, found: Examined) -> Calculator:
+    count, kinds, facts = operations(program), census(program.body), found.facts
+    if facts is None:
+        return Calculator(count, kinds, refused=found.refused)
     return Calculator(
         count,
         kinds,
@@ -197,17 +184,17 @@ def _calculator(program: Program, where: str) -> Calculator:
         facts.stack,
         facts.temporaries,
         tuple(v for v in facts.variables if v not in ("true", "ndef")),
-        remarks=tuple(portability(program)),
+        remarks=tuple(found.remarks),
     )
 
 
 def _sampled_programs(profile: Profile) -> Iterator[Facts | str]:
     """What is proven of curve sets that are sampled from programs, or why they are refused."""
-    for signature, pipeline in _pipelines(profile.tags):
+    for signature, pipeline in distinct_transforms(profile):
         for index, element in enumerate(pipeline.elements):
             if calculator_curves(element):
                 try:
-                    yield verify(element, f"tag '{signature}', element {index}")
+                    yield verify(element, place(signature, index))
                 except ProgramError as error:
                     yield str(error)
 

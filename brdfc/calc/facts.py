@@ -13,8 +13,8 @@ class Facts:
 
     stack: the greatest depth; temporaries: how many are in use; variables: signatures read, those
     of called calculators included. held: values a pixel keeps at once (stack, temporaries,
-    channels), and work: values popped and pushed on the dearest path, both with everything that is
-    called. nesting: how deep blocks and calls stand in each other.
+    channels), and work: values popped, pushed and kept aside on the dearest path, both with
+    everything that is called. nesting: how deep blocks and calls stand in each other.
     """
 
     stack: int
@@ -28,13 +28,14 @@ class Facts:
 @dataclass
 class State:
     """What holds on every path to a point: depth (least and greatest), work so far (greatest),
-    and bit sets of the temporaries and outputs that have been written."""
+    bit sets of the temporaries and outputs that have been written, and how many temporaries."""
 
     least: int = 0
     greatest: int = 0
     work: int = 0
     temporaries: int = 0
     outputs: int = 0
+    written: int = 0
 
 
 def joined(paths: list[State]) -> State:
@@ -45,4 +46,5 @@ def joined(paths: list[State]) -> State:
         max(path.work for path in paths),
         reduce(and_, (path.temporaries for path in paths)),
         reduce(and_, (path.outputs for path in paths)),
+        min(path.written for path in paths),
     )

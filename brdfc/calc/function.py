@@ -74,74 +74,88 @@ def _encode_operand(op: Op) -> bytes:
 
 def decode_block(words: Sequence[Word], where: str) -> Block:
     """Nested blocks from flat operations; ProgramError names the operation's index."""
-    return _decode_range(words, 0, len(words), where, 0)
+    return _Decoder(words, where).block(0, len(words), 0)
 
 
-def _decode_range(words: Sequence[Word], start: int, end: int, where: str, depth: int) -> Block:
-    if depth > MAX_NESTING:
-        raise ProgramError(f"blocks nest deeper than {MAX_NESTING}", where=f"{where}, op {start}")
-    block: list[Instruction] = []
-    at = start
-    while at < end:
-        signature, operand = words[at]
-        if signature == IF:
-            otherwise_follows = at + 1 < end and words[at + 1][0] == ELSE
-            heads = [at, at + 1] if otherwise_follows else [at]
-            bodies, at = _bodies(words, heads, end, where, depth)
-            block.append(If(bodies[0], bodies[1] if otherwise_follows else None))
-        elif signature == SELECT:
-            stop = at + 1
-            while stop < end and words[stop][0] == CASE:
-                stop += 1
-            if stop == at + 1:
-                raise ProgramError("'sel' without a 'case'", where=f"{where}, op {at}")
-            default_follows = stop < end and words[stop][0] == DEFAULT
-            heads = list(range(at + 1, stop + default_follows))
-            bodies, at = _bodies(words, heads, end, where, depth)
-            default = bodies.pop() if default_follows else None
-            block.append(Select(tuple(bodies), default))
-        else:
-            block.append(_decode_op(signature, operand, f"{where}, op {at}"))
-            at += 1
-    return tuple(block)
+class _Decoder:
+    def __init__(self, words: Sequence[Word], where: str) -> None:
+        self.words = words
+        self.where = where
+        self.known: dict[Word, Op] = {}
+        """Operations by their bytes: most stand in a program many times."""
 
+    def fail(self, message: str, at: int) -> ProgramError:
+        return ProgramError(message, where=f"{self.where}, op {at}")
 
-def _bodies(
-    words: Sequence[Word], heads: list[int], end: int, where: str, depth: int
-) -> tuple[list[Block], int]:
-    """The bodies whose lengths stand in consecutive heads, and the index after the last body."""
-    at = heads[-1] + 1
-    bodies: list[Block] = []
-    for head in heads:
-        (length,) = struct.unpack(">I", words[head][1])
-        if length > end - at:
-            name = words[head][0].decode("ascii").strip()
-            raise ProgramError(
-                f"'{name}' claims {length} operations where {end - at} are left in its block",
-                where=f"{where}, op {head}",
-            )
-        bodies.append(_decode_range(words, at, at + length, where, depth + 1))
-        at += length
-    return bodies, at
+    def block(self, start: int, end: int, depth: int) -> Block:
+        if depth > MAX_NESTING:
+            raise self.fail(f"blocks nest deeper than {MAX_NESTING}", start)
+        words, known = self.words, self.known
+        block: list[Instruction] = []
+        at = start
+        while at < end:
+            word = words[at]
+            op = known.get(word)
+            if op is not None:
+                block.append(op)
+                at += 1
+            elif word[0] == IF:
+                otherwise_follows = at + 1 < end and words[at + 1][0] == ELSE
+                heads = [at, at + 1] if otherwise_follows else [at]
+                bodies, at = self.bodies(heads, end, depth)
+                block.append(If(bodies[0], bodies[1] if otherwise_follows else None))
+            elif word[0] == SELECT:
+                instruction, at = self.select(at, end, depth)
+                block.append(instruction)
+            else:
+                known[word] = self.op(at)
+        return tuple(block)
 
+    def select(self, at: int, end: int, depth: int) -> tuple[Select, int]:
+        """The `sel` at a place, and the index after its last body."""
+        stop = at + 1
+        while stop < end and self.words[stop][0] == CASE:
+            stop += 1
+        if stop == at + 1:
+            raise self.fail("'sel' without a 'case'", at)
+        default_follows = stop < end and self.words[stop][0] == DEFAULT
+        heads = list(range(at + 1, stop + default_follows))
+        bodies, after = self.bodies(heads, end, depth)
+        default = bodies.pop() if default_follows else None
+        return Select(tuple(bodies), default), after
 
-def _decode_op(signature: bytes, word: bytes, where: str) -> Op:
-    operator = BY_SIGNATURE.get(signature)
-    if operator is None:
-        if signature in (ELSE, CASE, DEFAULT):
-            name = signature.decode("ascii").strip()
-            raise ProgramError(f"'{name}' without what it belongs to", where=where)
-        raise ProgramError(f"no operator has the signature {signature!r}", where=where)
-    operand = operator.operand
-    if operand is Operand.NONE:
-        return Op(operator.name)
-    if operand is Operand.CONSTANT:
-        return Op(operator.name, value=struct.unpack(">f", word)[0])
-    if operand is Operand.SIGNATURE:
-        return Op(operator.name, signature=word.decode("latin-1").rstrip(" "))
-    (_, first_less), (_, second_less) = HALVES[operand]
-    first, second = struct.unpack(">HH", word)
-    return Op(operator.name, first + first_less, second + second_less)
+    def bodies(self, heads: list[int], end: int, depth: int) -> tuple[list[Block], int]:
+        """The bodies whose lengths stand in consecutive heads, and the index after the last one."""
+        at = heads[-1] + 1
+        bodies: list[Block] = []
+        for head in heads:
+            (length,) = struct.unpack(">I", self.words[head][1])
+            if length > end - at:
+                name = self.words[head][0].decode("ascii").strip()
+                left = f"{end - at} are left in its block"
+                raise self.fail(f"'{name}' claims {length} operations where {left}", head)
+            bodies.append(self.block(at, at + length, depth + 1))
+            at += length
+        return bodies, at
+
+    def op(self, at: int) -> Op:
+        signature, word = self.words[at]
+        operator = BY_SIGNATURE.get(signature)
+        if operator is None:
+            if signature in (ELSE, CASE, DEFAULT):
+                name = signature.decode("ascii").strip()
+                raise self.fail(f"'{name}' without what it belongs to", at)
+            raise self.fail(f"no operator has the signature {signature!r}", at)
+        operand = operator.operand
+        if operand is Operand.NONE:
+            return Op(operator.name)
+        if operand is Operand.CONSTANT:
+            return Op(operator.name, value=struct.unpack(">f", word)[0])
+        if operand is Operand.SIGNATURE:
+            return Op(operator.name, signature=word.decode("latin-1").rstrip(" "))
+        (_, first_less), (_, second_less) = HALVES[operand]
+        first, second = struct.unpack(">HH", word)
+        return Op(operator.name, first + first_less, second + second_less)
 
 
 def encode_function(block: Block) -> bytes:

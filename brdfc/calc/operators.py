@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 
 
 class Operand(Enum):
@@ -74,7 +75,7 @@ class Operator:
     meaning: str
     portable: bool = True
 
-    @property
+    @cached_property
     def signature(self) -> bytes:
         """The four bytes in a file."""
         return self.name.ljust(4).encode("ascii")
@@ -219,3 +220,14 @@ BY_SIGNATURE: dict[bytes, Operator] = {o.signature: o for o in OPERATORS.values(
 
 # Control flow is not an operator of the table: it has blocks in the text and jump lengths in files.
 IF, ELSE, SELECT, CASE, DEFAULT = b"if  ", b"else", b"sel ", b"case", b"dflt"
+
+CALLED_KINDS = {
+    "curv": ("cvst",),
+    "mtx": ("matf",),
+    "clut": ("clut", "xclt"),
+    "tint": ("tint",),
+    "tJab": ("XtoJ",),
+    "fJab": ("JtoX",),
+    "calc": ("calc",),
+}
+"""The signatures of the elements that an operator may call; `elem` calls any."""

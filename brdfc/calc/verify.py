@@ -12,8 +12,7 @@ from dataclasses import dataclass, field, replace
 
 from brdfc.calc.curves import CurveSet, calculator_curves
 from brdfc.calc.facts import Facts, State, joined
-from brdfc.calc.operators import Operand
-from brdfc.calc.portability import portability
+from brdfc.calc.operators import CALLED_KINDS, Operand
 from brdfc.calc.program import (
     MAX_NESTING,
     Block,
@@ -27,22 +26,11 @@ from brdfc.calc.program import (
 from brdfc.calc.tables import LookupTable
 from brdfc.source.errors import ProgramError
 
-__all__ = ["Facts", "portability", "verify"]
-
 STACK_LIMIT = 65535
 WORK_LIMIT = 10_000_000
-"""Values popped and pushed for one pixel. A shared sub-element that calls a shared one, and so on,
-lets a file of a few hundred bytes stand for more work than there is time."""
-
-_KIND_OF_ELEMENT = {
-    "curv": ("cvst",),
-    "mtx": ("matf",),
-    "clut": ("clut", "xclt"),
-    "tint": ("tint",),
-    "tJab": ("XtoJ",),
-    "fJab": ("JtoX",),
-    "calc": ("calc",),
-}
+"""Values popped and pushed for one pixel, and kept aside where pixels may go different ways. A
+shared sub-element that calls a shared one, and so on, lets a file of a few hundred bytes stand for
+more work than there is time."""
 
 
 @dataclass
@@ -64,20 +52,26 @@ class _Checker:
         start = self.deepest = self.level
         state = State()
         self.block(self.program.body, state)
-        missing = ((1 << self.program.outputs) - 1) & ~state.outputs
+        missing = ~state.outputs & (1 << self.program.outputs) - 1
         if missing:
             raise ProgramError(
                 f"output {_lowest(missing)} is not written on every path", where=self.where
             )
-        channels = self.program.inputs + self.program.outputs
+        for index, element in enumerate(self.program.elements):
+            if _runs_programs(element):  # the reference engine asks it of uncalled ones too
+                self.proven(element, index)
         return Facts(
             self.peak,
             self.temporaries,
             tuple(sorted(self.variables)),
-            self.peak + self.temporaries + channels + self.held_by_called,
+            self.peak + self.temporaries + self.channels + self.held_by_called,
             state.work,
             self.deepest - start,
         )
+
+    @property
+    def channels(self) -> int:
+        return self.program.inputs + self.program.outputs
 
     def fail(self, message: str) -> ProgramError:
         return ProgramError(message, where=f"{self.where}, op {self.index}")
@@ -100,6 +94,9 @@ class _Checker:
         self.take(state, 1, 0, "if" if isinstance(instruction, If) else "sel")
         self.enter(1)
         bodies = instruction.bodies
+        # An engine splits the state by the way that each pixel goes.
+        kept = state.greatest + state.written + self.channels
+        self.work(state, kept * (len(bodies) + (not instruction.complete)))
         self.index += heads(instruction)
         self.level += 1
         # Where there is no `else` or `dflt`, none of the bodies may run.
@@ -129,30 +126,34 @@ class _Checker:
         self.take(state, popped, pushed, op.name)
 
     def span(self, op: Op, state: State) -> None:
-        bits = ((1 << op.second) - 1) << op.first
-        end = op.first + op.second
+        end, mask = op.first + op.second, (1 << op.second) - 1
         limit = {"in": self.program.inputs, "out": self.program.outputs}.get(op.name, 65536)
         if end > limit:
             what = "temporary" if op.name.startswith("t") else "channel"
             raise self.fail(f"'{op.name}' reaches {what} {end - 1}; there are {limit}")
         if op.name == "out":
-            state.outputs |= bits
-        elif op.name in ("tput", "tsav"):
-            state.temporaries |= bits
+            state.outputs |= mask << op.first
+        elif op.name != "in" and (unwritten := ~(state.temporaries >> op.first) & mask):
+            if op.name == "tget":
+                which = f"temporary {op.first + _lowest(unwritten)}"
+                raise self.fail(f"{which} is read, and on some path nothing was written")
+            state.temporaries |= unwritten << op.first
+            state.written += unwritten.bit_count()
             self.temporaries = max(self.temporaries, end)
-        elif op.name == "tget" and bits & ~state.temporaries:
-            missing = _lowest(bits & ~state.temporaries)
-            raise self.fail(f"temporary {missing} is read, and on some path nothing was written")
 
     def take(self, state: State, popped: int, pushed: int, name: str) -> None:
         if state.least < popped:
             raise self.fail(f"'{name}' needs {popped} values, {state.least} are on the stack")
         state.least += pushed - popped
         state.greatest += pushed - popped
-        state.work += 1 + popped + pushed
-        self.peak = max(self.peak, state.greatest)
-        if self.peak > STACK_LIMIT:
-            raise self.fail(f"the stack grows beyond {STACK_LIMIT} values")
+        if state.greatest > self.peak:
+            self.peak = state.greatest
+            if self.peak > STACK_LIMIT:
+                raise self.fail(f"the stack grows beyond {STACK_LIMIT} values")
+        self.work(state, 1 + popped + pushed)
+
+    def work(self, state: State, values: int) -> None:
+        state.work += values
         if state.work > WORK_LIMIT:
             raise self.fail(f"a pixel may take more than {WORK_LIMIT:,} steps up to here")
 
@@ -161,7 +162,7 @@ class _Checker:
         if op.first >= len(elements):
             raise self.fail(f"'{op.name}' calls sub-element {op.first}; there are {len(elements)}")
         element = elements[op.first]
-        kinds = _KIND_OF_ELEMENT.get(op.name)
+        kinds = CALLED_KINDS.get(op.name)
         if kinds is not None and element.signature not in kinds:
             raise self.fail(
                 f"'{op.name}' needs a '{kinds[0]}' element, sub-element {op.first} is a "
@@ -171,15 +172,21 @@ class _Checker:
 
     def call(self, element: Element, op: Op) -> int:
         """The work a call takes; what it runs is proven first."""
-        if not isinstance(element, Program) and not calculator_curves(element):
+        if not _runs_programs(element):
             return _work(element)
-        self.enter(1)
-        where = f"{self.where}, sub-element {op.first}"
-        facts = _facts(element, where, self.level + 1, self.known)
+        facts = self.proven(element, op.first)
         self.enter(1 + facts.nesting)
         self.held_by_called = max(self.held_by_called, facts.held)
         self.variables.update(facts.variables)
         return facts.work
+
+    def proven(self, element: Element, index: int) -> Facts:
+        self.enter(1)
+        return _facts(element, f"{self.where}, sub-element {index}", self.level + 1, self.known)
+
+
+def _runs_programs(element: Element) -> bool:
+    return isinstance(element, Program) or bool(calculator_curves(element))
 
 
 def _facts(element: Element, where: str, level: int, known: dict[int, Facts]) -> Facts:

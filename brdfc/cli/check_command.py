@@ -14,13 +14,18 @@ import click
 def command(target: str, scene: str | None) -> None:
     """Verify everything that can be verified about a model or a profile, one line each.
 
+    Of a profile, as a file or in XML: its structure, the rules of its class, that its calculators
+    are safe to run, where they lean on what releases of the reference engine do differently (within
+    the ranges that the profile states), and the reference engine's own verdict.
+
     Lines begin with ok, warning, error, or open (not checked). The exit status is 1 if there is
-    an error.
+    an error; warnings do not count.
 
     \b
     Example:
       brdfc check ward
       brdfc check ward_mvis.icc
+      brdfc check inks.xml
       brdfc check ward_mvis.icc --scene scene.toml
     """
     from brdfc.checker import ERROR, check, is_profile
@@ -35,6 +40,7 @@ def command(target: str, scene: str | None) -> None:
     failed = False
     for finding in found(target):
         failed |= finding.status == ERROR
-        click.echo(f"{finding.status:<8} {finding.message}")
+        line = f"{finding.status:<8} {finding.message}"
+        click.echo("".join(c if c.isprintable() else "?" for c in line))
     if failed:
         sys.exit(1)

@@ -95,7 +95,9 @@ def run(
     (..., outputs), float32.
     Raises ProgramError when a program cannot be proven safe or the channels do not fit.
     """
-    step = max(1, min(BLOCK, HELD // max(1, verify(element).held)))
+    facts = verify(element)
+    held = facts.held * (1 + facts.nesting)  # a branch keeps the state aside
+    step = max(1, min(BLOCK, HELD // max(1, held)))
     array = np.asarray(pixels, dtype=np.float32)
     if array.ndim == 0 or array.shape[-1] != element.inputs:
         raise ProgramError(f"{element.inputs} channels are needed, the array is {array.shape}")

@@ -5,11 +5,11 @@ float64 and rounded once: NumPy's own float32 versions change with the processor
 and it is within one unit in the last place of any good C library.
 
 Where releases of the reference engine disagree, these follow the newest one there is to measure
-(the package iccdev 0.1.1): x/0 is 0, `mod` is the exact remainder (0 for a divisor below 1e-12),
-`trnc` and `rond` saturate at 2^31. They do not follow it where it is wrong: `rond` of an infinity
-saturates too (the reference gives 10000); every NaN equals every NaN in `eq`, and `rnum` is 0 for
-every NaN (the reference knows one bit pattern of them). Generated programs never depend on any of
-these.
+(the package iccdev 0.1.1), as calc/disagreements.py lists: x/0 is 0, `mod` is the exact remainder
+(0 for a divisor below 1e-12), `trnc` and `rond` saturate at 2^31. They do not follow it where it is
+wrong: `rond` of an infinity saturates too (the reference gives 10000); every NaN equals every NaN
+in `eq`, and `rnum` is 0 for every NaN (the reference knows one bit pattern of them). Generated
+programs never depend on any of these.
 """
 
 from __future__ import annotations
@@ -20,6 +20,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from brdfc.calc.disagreements import LEAST_DIVISOR
 
 Values = NDArray[np.float32]
 Kernel = Callable[..., Values]
@@ -56,7 +58,7 @@ def _power(x: Any, y: Any) -> Any:
 
 
 def _remainder(x: Values, y: Values) -> Values:
-    good = np.isfinite(x) & np.isfinite(y) & (np.abs(y).astype(np.float64) >= 1e-12)
+    good = np.isfinite(x) & np.isfinite(y) & (np.abs(y).astype(np.float64) >= LEAST_DIVISOR)
     return np.where(good, np.fmod(x, np.where(good, y, np.float32(1))), np.float32(0))
 
 

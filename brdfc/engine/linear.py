@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from brdfc.calc.disagreements import SINGULAR
 from brdfc.calc.program import Matrix
 from brdfc.engine.kernels import Apply
 
-SINGULAR = np.float32(1e-8)
-"""The determinant below which the reference engine does not solve a system, whatever its scale."""
+_SINGULAR = np.float32(SINGULAR)
 
 
 def solve(matrix: Sequence[Any], right: Sequence[Any], rows: int, apply: Apply) -> list[Any]:
@@ -36,7 +36,7 @@ def solve(matrix: Sequence[Any], right: Sequence[Any], rows: int, apply: Apply) 
 
     terms = [mul(m[0][column], minor(0, column)) for column in range(3)]
     determinant = add(sub(terms[0], terms[1]), terms[2])
-    solved = apply("not", apply("lt", apply("abs", determinant), SINGULAR))
+    solved = apply("not", apply("lt", apply("abs", determinant), _SINGULAR))
     solution = []
     for j in range(3):
         signed = [mul(np.float32((-1) ** (i + j)), minor(i, j)) for i in range(3)]

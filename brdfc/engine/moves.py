@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Protocol
 
+from brdfc.calc.moves import rearranged
 from brdfc.calc.program import Op
 
 
@@ -41,21 +42,6 @@ def move(op: Op, state: State) -> None:
 
 def rearrange(op: Op, state: State) -> None:
     """Places on the stack."""
-    name, first, second, stack = op.name, op.first, op.second, state.stack
-    if name == "copy":
-        stack += stack[len(stack) - first :] * second
-    elif name in ("rotl", "rotr"):
-        values = state.pop(first)
-        places = (second if name == "rotl" else -second) % first
-        stack += values[places:] + values[:places]
-    elif name == "posd":
-        stack += [stack[-first]] * second
-    elif name == "flip":
-        stack += reversed(state.pop(first))
-    elif name == "pop":
-        state.pop(first)
-    elif name == "tran":
-        values = state.pop(first * second)
-        stack += [values[r * second + c] for c in range(second) for r in range(first)]
-    else:
-        assert name == "noop", name
+    assert op.operator.effect is not None
+    popped, _ = op.operator.effect(op.first, op.second)
+    state.stack += rearranged(op, state.pop(popped))

@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfc.calc.binary import decode_element, encode_element
+from brdfc.calc.facts import Facts
 from brdfc.calc.program import Program
 from brdfc.calc.text import assemble, disassemble
-from brdfc.calc.verify import Facts, verify
+from brdfc.calc.verify import verify
 from brdfc.codegen.select import Binding, ChannelBinding, VariableBinding
 from brdfc.colour.colorimetry import XYZ_UNDER_D50, Colorimetry
 from brdfc.engine.interpreter import run

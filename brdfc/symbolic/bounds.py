@@ -142,7 +142,7 @@ def _abs(a: Interval) -> Interval:
 
 def _step(function: Callable[[float], float]) -> Callable[[Interval], Interval]:
     def rule(a: Interval) -> Interval:
-        bounds = [function(v) if math.isfinite(v) else v for v in (a.low, a.high)]
+        bounds = [float(function(v)) if math.isfinite(v) else v for v in (a.low, a.high)]
         return Interval(bounds[0], bounds[1], a.undefined)
 
     return rule

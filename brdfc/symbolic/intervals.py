@@ -104,3 +104,15 @@ def float32_bounds(low: float, high: float, *, undefined: bool) -> Interval:
     low = -INF if low < -LARGEST else (0.0 if 0 < low < SMALLEST else min(low, LARGEST))
     high = INF if high > LARGEST else (0.0 if -SMALLEST < high < 0 else max(high, -LARGEST))
     return Interval(low, high, undefined)
+
+
+_LEAST = 2.0**-149
+
+
+def above(value: float) -> float:
+    """The least float32 greater than a value (never rounded up past it)."""
+    return max(value + _LEAST, value * (1 + 2.0**-24) if value > 0 else value * (1 - 2.0**-24))
+
+
+def below(value: float) -> float:
+    return -above(-value)

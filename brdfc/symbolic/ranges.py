@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from brdfc.lang.model import Quantity
 from brdfc.symbolic.bounds import RULES, square, whole_power
 from brdfc.symbolic.expression import Expression, whole_exponent
-from brdfc.symbolic.intervals import INF, Interval, hull, meet, single
+from brdfc.symbolic.intervals import INF, Interval, above, below, hull, meet, single
 from brdfc.symbolic.trigonometry import widest_above
 
 _NEGATED = {"lt": "ge", "le": "gt", "gt": "le", "ge": "lt", "eq": "ne", "ne": "eq"}
@@ -112,9 +112,9 @@ class Ranges:
         self, e: Expression, relation: str, other: Interval, facts: dict[Expression, Interval]
     ) -> None:
         bound = {
-            "lt": Interval(-INF, _below(other.high)),
+            "lt": Interval(-INF, below(other.high)),
             "le": Interval(-INF, other.high),
-            "gt": Interval(_above(other.low), INF),
+            "gt": Interval(above(other.low), INF),
             "ge": Interval(other.low, INF),
             "eq": other,
         }.get(relation)
@@ -142,15 +142,3 @@ class Ranges:
         if -1.5 * math.pi < known.low and known.high < 1.5 * math.pi:
             widest = widest_above(cosine)
             facts[e] = meet(known, Interval(-widest, widest))
-
-
-_LEAST = 2.0**-149
-
-
-def _above(value: float) -> float:
-    """The least float32 greater than a value (never rounded up past it)."""
-    return max(value + _LEAST, value * (1 + 2.0**-24) if value > 0 else value * (1 - 2.0**-24))
-
-
-def _below(value: float) -> float:
-    return -_above(-value)

@@ -53,19 +53,19 @@ def _cos(a: Interval) -> Interval:
     if not a.finite:
         return Interval(-1.0, 1.0, undefined=True)
     edges = (math.cos(a.low), math.cos(a.high))
-    low = -1.0 if _holds_multiple(a, math.pi, 2 * math.pi) else min(edges)
-    high = 1.0 if _holds_multiple(a, 0.0, 2 * math.pi) else max(edges)
+    low = -1.0 if holds_multiple(a, math.pi, 2 * math.pi) else min(edges)
+    high = 1.0 if holds_multiple(a, 0.0, 2 * math.pi) else max(edges)
     gap = _nearest_to_zero(a.low, a.high) if low <= 0 <= high else 0.0
-    return _unit(low, high, undefined=a.undefined, gap=gap)
+    return unit(low, high, undefined=a.undefined, gap=gap)
 
 
-def _unit(low: float, high: float, *, undefined: bool, gap: float = 0.0) -> Interval:
+def unit(low: float, high: float, *, undefined: bool, gap: float = 0.0) -> Interval:
     """Bounds of a sine or cosine, which no library takes beyond -1..1."""
     wide = outward(low, high, undefined=undefined)
     return Interval(max(wide.low, -1.0), min(wide.high, 1.0), undefined, gap)
 
 
-def _holds_multiple(a: Interval, offset: float, period: float) -> bool:
+def holds_multiple(a: Interval, offset: float, period: float) -> bool:
     """Whether offset + k period lies in the interval, within rounding."""
     slack = 1e-6 * max(1.0, abs(a.low), abs(a.high))
     k = math.ceil((a.low - slack - offset) / period)
@@ -76,9 +76,9 @@ def _sin(a: Interval) -> Interval:
     if not a.finite:
         return Interval(-1.0, 1.0, undefined=True)
     edges = (math.sin(a.low), math.sin(a.high))
-    low = -1.0 if _holds_multiple(a, -math.pi / 2, 2 * math.pi) else min(edges)
-    high = 1.0 if _holds_multiple(a, math.pi / 2, 2 * math.pi) else max(edges)
-    return _unit(low, high, undefined=a.undefined)
+    low = -1.0 if holds_multiple(a, -math.pi / 2, 2 * math.pi) else min(edges)
+    high = 1.0 if holds_multiple(a, math.pi / 2, 2 * math.pi) else max(edges)
+    return unit(low, high, undefined=a.undefined)
 
 
 def _tan(a: Interval) -> Interval:

@@ -11,7 +11,7 @@ from brdfc.calc.operators import OPERATORS, Operand
 from brdfc.calc.price import operations
 from brdfc.calc.program import Matrix, Op, OpaqueElement, Program, encoded_length
 from brdfc.calc.text import assemble
-from brdfc.calc.verify import Facts, portability, verify
+from brdfc.calc.verify import Facts, verify
 from brdfc.source.errors import ProgramError
 
 MATRIX = Matrix(2, 1, (1.0, 2.0), (0.0,))
@@ -132,42 +132,6 @@ def test_a_long_program_decodes_and_verifies_quickly():
     facts = verify(decode_element(data, "x"))
     assert time.perf_counter() - started < 2.0  # 0.4 s on one core
     assert facts.stack == 1
-
-
-# ---------------------------------------------------------------- portability and price
-
-
-@pytest.mark.parametrize(
-    ("text", "findings"),
-    [
-        ("{ in[0,2] add out }", []),
-        ("{ in scnt add out noop }", ["op 1: 'scnt' is unknown", "op 4: 'noop' is unknown"]),
-        ("{ in[0,2] vxor out }", ["op 1: 'vxor' is unknown to older releases"]),
-        ("{ in[0,2] mod trnc out }", ["op 1: 'mod' gives different", "op 2: 'trnc' gives differ"]),
-        ("{ 1 out in if { } else { } }", ["op 3: an empty 'else' at the end of a block fails"]),
-        ("{ in if { in if { } else { } } 1 out }", ["op 3: an empty 'else'"]),
-        ("{ in if { } else { } 1 out }", []),
-        ("{ in if { } else { 1 out } 1 out }", []),
-        ("{ 1 out in sel case { pi } case { } }", ["op 3: an empty last case"]),
-        ("{ 1 out in sel case { pi } dflt { } }", ["op 3: an empty last case"]),
-        ("{ 1 out in sel case { } dflt { pi } }", []),
-        ("{ 1 out in if { in sel case { pi } dflt { } } }", ["op 5: an empty last case"]),
-        ("{ in sel case { pi } dflt { } 1 out }", []),
-        ("{ in if { } else { pi } in rond out }", ["op 5: 'rond' gives different results"]),
-    ],
-)
-def test_portability(text, findings):
-    found = portability(program(text))
-    assert len(found) == len(findings)
-    assert all(f.startswith(expected) for f, expected in zip(found, findings, strict=True))
-
-
-def test_portability_of_called_calculators():
-    inner = Program(1, 1, assemble("{ in rond out }"))
-    outer = program("{ in calc(0) out }", inner, inner)
-    assert portability(outer) == [
-        "sub-element 0, op 1: 'rond' gives different results at its extremes"
-    ]
 
 
 def test_effects_of_the_table():

@@ -179,6 +179,6 @@ def test_the_dispatcher_itself(tmp_path):
 )
 def test_what_the_reference_refuses(tmp_path, text):
     program = Program(3, 3, assemble("{" + text + "}"))
-    assert "an empty last case" in portability(program)[0]
+    assert any("an empty last case" in finding for finding in portability(program))
     with pytest.raises(LinkError):
         judged(tmp_path, [program], np.zeros((1, 3), np.float32))
