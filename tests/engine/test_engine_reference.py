@@ -21,6 +21,7 @@ from brdfc.calc.portability import portability
 from brdfc.calc.program import Matrix, Program
 from brdfc.calc.text import assemble, disassemble
 from brdfc.engine.interpreter import run
+from brdfc.engine.kernels import ROOT_ABOVE
 from brdfc.source.errors import LinkError
 
 pytest.importorskip("iccdev")
@@ -108,7 +109,7 @@ def test_single_operators(tmp_path):
             roots = np.cbrt(np.abs(pixels[sound]).max(axis=1, keepdims=True)) + 80
             apart = np.abs(theirs[sound].astype(float) - ours[sound])
             assert (apart <= 1000 * 2.0**-23 * roots).all()
-            continue
+            ours, theirs = (v[(pixels < ROOT_ABOVE).all(axis=1)] for v in (ours, theirs))
         apart = ulps(ours, theirs)
         assert apart.max() <= (name in TRANSCENDENTAL), (name, pixels[apart.argmax() // 3])
         zero = (ours == 0) & (theirs == 0)
