@@ -91,7 +91,14 @@ class _Generator:
         return inner.program(outputs, 6)
 
     def block(self, length: int, levels: int) -> Block:
-        return tuple(i for _ in range(self.number(0, length)) for i in self.step(levels))
+        """Up to so many steps: whether there is another is drawn before each, so that any of them
+        can be left out of what fails."""
+        found: list[Instruction] = []
+        for _ in range(length):
+            if not self.choose((False, *(True,) * length)):
+                break
+            found += self.step(levels)
+        return tuple(found)
 
     def step(self, levels: int) -> Sequence[Instruction]:
         kinds = ["push", "push", "operator", "operator", "operator", "move", "temporary", "call"]
