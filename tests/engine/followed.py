@@ -109,7 +109,8 @@ class Nearby(Engine):
         if name not in FIXED:
             return super().operation(name, *arguments)
         shape = np.broadcast_shapes(*(a.shape for a in arguments))
-        return moved(name, arguments, self.random.integers(-1, 2, shape))
+        ulps = self.random.integers(-1, 2, shape)
+        return moved(name, FIXED[name](*arguments), arguments, ulps)[0]
 
     def call(self, element: Any, inputs: list[Floats]) -> list[Floats]:
         found = super().call(element, inputs)

@@ -2,8 +2,8 @@
 
 Of one value they give what the engine computes; a formula of a curve is a composition of functions,
 computed in float64 and rounded once, and CURVE_ULPS off at most. Of several values: a formula takes
-its extremes at the ends and where it turns, or every float is tried; and samples joined by lines are
-as steep as the steepest of them.
+its extremes at the ends and where it turns, or every float is tried; and samples joined by lines
+are as steep as the steepest of them.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from brdfc.calc.tables import LookupTable
 from brdfc.engine.curves import apply_curves
 from brdfc.engine.tables import apply_table
 
-CURVE_ULPS = 2
+CURVE_ULPS = 1
 HALF_UNIT = 2.0**-24
 _QUOTIENTS, SHORT = (6, 7), 16
 """Formulas whose float32 steps do not grow together; so many floats are tried one by one."""

@@ -56,17 +56,20 @@ _REALS = (-np.inf, np.inf)
 _DOMAINS = {"ln": (-0.0, np.inf), "log": (-0.0, np.inf), "asin": (-1.0, 1.0), "acos": (-1.0, 1.0)}
 
 
-def moved(name: str, arguments: tuple[Floats, ...], ulps: np.ndarray | int) -> Floats:
-    """What a library gives that is so many floats off, where it may be."""
+def moved(
+    name: str, fixed: Flags, arguments: tuple[Floats, ...], *ulps: np.ndarray | int
+) -> list[Floats]:
+    """What libraries give that are so many floats off, each, but where the result is fixed."""
     result = np.asarray(compute(name, *arguments))
     low, high = (place(end) for end in _RANGES.get(name, _REALS))
-    off = at(np.clip(place(result) + ulps, low, high))
-    return np.where(FIXED[name](*arguments) | np.isnan(result), result, off)
+    off = [at(np.minimum(np.maximum(place(result) + n, low), high)) for n in ulps]
+    return [np.where(fixed | np.isnan(result), result, values) for values in off]
 
 
-def _ends(name: str, *arguments: Floats) -> Interval:
-    """What libraries may give for one set of arguments."""
-    return enclosing(moved(name, arguments, -1), moved(name, arguments, 1))
+def _ends(name: str, alone: Flags, *arguments: Floats) -> Interval:
+    """What libraries may give for one set of arguments. alone: there are no others; of those
+    beside it, a library may give less than what is fixed for it."""
+    return enclosing(*moved(name, alone & FIXED[name](*arguments), arguments, -1, 1))
 
 
 def _nothing(x: Interval) -> Interval:
@@ -78,7 +81,7 @@ def _growing(name: str) -> Rule:
 
     def rule(x: Interval) -> Interval:
         inside = clipped(x, *_DOMAINS.get(name, _REALS))
-        found = hull([_ends(name, inside.low), _ends(name, inside.high)])
+        found = hull([_ends(name, x.single, v) for v in (inside.low, inside.high)])
         return replace(chosen(inside.some, found, _nothing(x)), nan=inside.nan)
 
     return propagating(rule)
@@ -98,7 +101,7 @@ def _passes(x: Interval, first: float, period: float) -> Flags:
 
 def _wave(name: str, peak: float) -> Rule:
     def rule(x: Interval) -> Interval:
-        ends = hull([_ends(name, x.low), _ends(name, x.high)])
+        ends = hull([_ends(name, x.single, v) for v in (x.low, x.high)])
         low = np.where(_passes(x, peak + np.pi, 2 * np.pi), -ONE, ends.low)
         high = np.where(_passes(x, peak, 2 * np.pi), ONE, ends.high)
         return Interval(low, high, ends.nan)
@@ -107,34 +110,36 @@ def _wave(name: str, peak: float) -> Rule:
 
 
 def _tangent(x: Interval) -> Interval:
-    ends = hull([_ends("tan", x.low), _ends("tan", x.high)])
+    ends = hull([_ends("tan", x.single, v) for v in (x.low, x.high)])
     every = replace(everything(ends), nan=ends.nan)
     return chosen(_passes(x, np.pi / 2, np.pi), every, ends)
 
 
 def _angle(x: Interval, y: Interval) -> Interval:
-    ends = corners(lambda x, y: _ends("atn2", x, y), x, y)
+    alone = x.single & y.single
+    ends = corners(lambda x, y: _ends("atn2", alone, x, y), x, y)
     cut = np.signbit(y.low) & ~np.signbit(y.high) & np.signbit(x.low)
-    straight = _ends("atn2", np.full_like(ends.low, -1), np.zeros_like(ends.low))
+    straight = _ends("atn2", alone, np.full_like(ends.low, -1), np.zeros_like(ends.low))
     return chosen(cut, Interval(-straight.high, straight.high, ends.nan), ends)
 
 
 def _power(x: Interval, y: Interval) -> Interval:
     """Of a negative base, whole exponents give numbers; of minus infinity, all do."""
 
-    def powers(x: Interval) -> Interval:
-        return corners(lambda x, y: _ends("pow", x, y), x, y)
+    alone = x.single & y.single
+
+    def powers(base: Interval) -> Interval:
+        return corners(lambda x, y: _ends("pow", alone, x, y), base, y)
 
     whole = y.single & (np.floor(y.low) == y.low)
     even = whole & (np.isinf(y.low) | (np.fmod(y.low, 2) == 0))
     negative, across = np.signbit(x.low), np.signbit(x.low) & ~np.signbit(x.high)
-    several = ~(x.single & y.single)
     real = clipped(x, -0.0, np.inf)
     roots = replace(chosen(real.some, powers(real), _nothing(x)), nan=real.nan)
-    found = chosen(negative & several & ~whole, roots, powers(x))
+    found = chosen(negative & ~alone & ~whole, roots, powers(x))
     found = chosen(even, powers(size(x)), found)
     pole = whole & ~even & across & (y.low < 0)
-    odd = negative & several & ~whole & ((x.low == -INF) | ~y.single)
+    odd = negative & ~alone & ~whole & ((x.low == -INF) | ~y.single)
     found = chosen(pole | odd, everything(found, nan=True), found)
     return _with_nan(x, y, found)
 
@@ -154,6 +159,10 @@ def size(x: Interval) -> Interval:
     return Interval(np.where(across, ZERO, ends.low), ends.high, ends.nan)
 
 
+def _lab_root(t: Interval) -> Interval:
+    return pieces(lambda v: _ends("lab root", np.True_, v), ROOT_ABOVE, t)
+
+
 def _lab_cube(f: Interval) -> Interval:
     """0 for NaN."""
     found = pieces(lambda v: exact(INNER["lab cube"](v)), CUBE_ABOVE, f)
@@ -168,6 +177,8 @@ RULES: dict[str, Rule] = {
     "tan": propagating(_tangent),
     "pow": _power,
     "atn2": propagating(_angle),
-    "lab root": propagating(lambda t: pieces(lambda v: _ends("lab root", v), ROOT_ABOVE, t)),
+    "lab root": propagating(
+        lambda t: pieces(lambda v: _ends("lab root", np.True_, v), ROOT_ABOVE, t)
+    ),
     "lab cube": _lab_cube,
 }

@@ -13,14 +13,15 @@ from intervals import (
     ONE,
     ZERO,
     Flags,
+    Floats,
     Interval,
     Rule,
-    at,
     enclosing,
     exact,
+    greatest,
     infinite,
     joined,
-    place,
+    least,
 )
 
 from brdfc.engine.kernels import UNARY
@@ -125,13 +126,13 @@ def _choose(condition: Interval, x: Interval, y: Interval) -> Interval:
     return replace(found, disputed=found.disputed | condition.disputed)
 
 
-def _extreme(best: np.ufunc, may_x: Relation, may_y: Relation) -> Rule:
+def _extreme(best: Callable[..., Floats], may_x: Relation, may_y: Relation) -> Rule:
     """X where it is beyond Y, else Y: so also where one of them is NaN."""
 
     def rule(x: Interval, y: Interval) -> Interval:
         some = x.some & y.some
         is_x, is_y = some & may_x(x, y), some & may_y(x, y)
-        low, high = at(best(place(x.low), place(y.low))), at(best(place(x.high), place(y.high)))
+        low, high = best(x.low, y.low), best(x.high, y.high)
         # Of two zeros it is Y, whatever the signs.
         low, high = np.where(low == 0, np.float32(-0.0), low), np.where(high == 0, ZERO, high)
         never = np.zeros_like(some)
@@ -156,8 +157,8 @@ def _extreme_of(two: Rule) -> Rule:
     return rule
 
 
-_LEAST = _extreme(np.minimum, _less, _at_least)
-_GREATEST = _extreme(np.maximum, _greater, _at_most)
+_LEAST = _extreme(least, _less, _at_least)
+_GREATEST = _extreme(greatest, _greater, _at_most)
 
 RULES: dict[str, Rule] = {
     "lt": _relation(_less, _at_least),

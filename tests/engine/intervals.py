@@ -48,17 +48,35 @@ class Interval:
         return np.where(np.isnan(values), self.nan, inside)
 
 
+def _ordered(values: ArrayLike) -> NDArray[np.int32]:
+    """Numbers in the order of floats, -1 for -0 and 0 for 0. It undoes itself."""
+    bits = np.asarray(values, dtype=np.float32).view(np.int32)
+    return bits ^ ((bits >> 31) & 0x7FFFFFFF)
+
+
+def _floats(numbers: NDArray[np.int32]) -> Floats:
+    return (numbers ^ ((numbers >> 31) & 0x7FFFFFFF)).view(np.float32)
+
+
+def least(*values: Floats) -> Floats:
+    """The least of floats; of zeros, -0."""
+    return _floats(reduce(np.minimum, map(_ordered, values)))
+
+
+def greatest(*values: Floats) -> Floats:
+    """The greatest of floats; of zeros, 0."""
+    return _floats(reduce(np.maximum, map(_ordered, values)))
+
+
 def place(values: ArrayLike) -> NDArray[np.int64]:
     """Floats numbered from -inf to inf, -1 for -0 and 0 for 0."""
-    bits = np.asarray(values, dtype=np.float32).view(np.int32).astype(np.int64)
-    return np.where(bits < 0, ~(bits & 0x7FFFFFFF), bits)
+    return _ordered(values).astype(np.int64)
 
 
 def at(places: NDArray[np.int64]) -> Floats:
     """The floats of these numbers; what lies beyond the infinities is infinite."""
-    within = np.clip(places, ~_HIGHEST, _HIGHEST)
-    bits = np.where(within < 0, ~within | 0x80000000, within)
-    return bits.astype(np.uint32).view(np.float32)
+    within = np.minimum(np.maximum(places, ~_HIGHEST), _HIGHEST)
+    return _floats(np.asarray(within, dtype=np.int32))
 
 
 def exact(values: ArrayLike) -> Interval:
@@ -69,28 +87,29 @@ def exact(values: ArrayLike) -> Interval:
 def enclosing(*values: Floats) -> Interval:
     """From the least to the greatest of some values; NaN where any of them is."""
     nan = [np.isnan(v) for v in values]
-    low = reduce(np.minimum, [place(np.where(n, INF, v)) for n, v in zip(nan, values, strict=True)])
-    high = [place(np.where(n, -INF, v)) for n, v in zip(nan, values, strict=True)]
-    return Interval(at(low), at(reduce(np.maximum, high)), reduce(np.logical_or, nan))
+    lows = [np.where(n, INF, v) for n, v in zip(nan, values, strict=True)]
+    highs = [np.where(n, -INF, v) for n, v in zip(nan, values, strict=True)]
+    return Interval(least(*lows), greatest(*highs), reduce(np.logical_or, nan))
 
 
 def joined(*parts: tuple[Interval, Flags]) -> Interval:
     """All values of those intervals that their flags let in, with what they rest on."""
-    lows = [place(np.where(use, x.low, INF)) for x, use in parts]
-    highs = [place(np.where(use, x.high, -INF)) for x, use in parts]
-    nans = [x.nan & use for x, use in parts]
-    disputes = [np.where(use, x.disputed, 0) for x, use in parts]
     return Interval(
-        at(reduce(np.minimum, lows)),
-        at(reduce(np.maximum, highs)),
-        reduce(np.logical_or, nans),
-        reduce(np.bitwise_or, disputes),
+        least(*(np.where(use, x.low, INF) for x, use in parts)),
+        greatest(*(np.where(use, x.high, -INF) for x, use in parts)),
+        reduce(np.logical_or, [x.nan & use for x, use in parts]),
+        reduce(np.bitwise_or, [np.where(use, x.disputed, 0) for x, use in parts]),
     )
 
 
 def chosen(condition: Flags, x: Interval, y: Interval) -> Interval:
     """x where the condition holds, else y."""
-    return joined((x, condition), (y, ~condition))
+    return Interval(
+        np.where(condition, x.low, y.low),
+        np.where(condition, x.high, y.high),
+        np.where(condition, x.nan, y.nan),
+        np.where(condition, x.disputed, y.disputed),
+    )
 
 
 def everything(x: Interval, *, nan: bool = False) -> Interval:

@@ -22,18 +22,21 @@ from brdfc.source.errors import BrdfcError
 
 @dataclass(frozen=True)
 class Failure:
-    """A program that is wrong somewhere, and where."""
+    """A program that is wrong somewhere, of what pixels and variables, and where."""
 
     program: Program
+    pixels: Floats
+    environment: Mapping[str, float]
     text: str
 
 
 @dataclass
 class Tally:
-    """What became of values: agreed, by the floats between the ends of their interval (the bits of
-    that number); left out, by what they rest on; and unbounded."""
+    """What became of programs, and of their values: agreed, by the floats between the ends of their
+    interval (the bits of that number); left out, by what they rest on; and unbounded."""
 
     programs: int = 0
+    refused: int = 0
     values: int = 0
     agreed: Counter[int] = field(default_factory=Counter)
     disputed: Counter[str] = field(default_factory=Counter)
@@ -47,7 +50,9 @@ class Tally:
 
         exact, close = self.agreed[0], sum(n for bits, n in self.agreed.items() if 0 < bits <= 4)
         lines = [
-            f"{self.programs:,} programs, {self.values:,} values, {len(self.failures)} wrong programs",
+            f"{self.programs:,} programs, {len(self.failures)} wrong",
+            f"{self.refused:,} more that the reference refuses",
+            f"{self.values:,} values",
             f"agree: {share(self.agreed.total())}",
             f"  of intervals of one float, or NaN: {share(exact)}",
             f"  of up to 16 floats: {share(close)}",
@@ -67,13 +72,13 @@ def judge(
     environment: Mapping[str, float],
     tally: Tally,
 ) -> None:
-    """Our results and the reference's, of pixels (n, channels), against the bounds; into a tally."""
+    """Our results and the reference's against the bounds, into a tally. pixels: (n, channels)."""
     try:
         theirs = judged(folder, programs, pixels, (environment,))[0]
     except BrdfcError as error:  # the reference refuses one of them, or crashes on it
         if len(programs) == 1:
             text = f"the reference fails: {error}\n{shown(programs[0])}"
-            tally.failures.append(Failure(programs[0], text))
+            tally.failures.append(Failure(programs[0], pixels, environment, text))
             return
         half = len(programs) // 2
         for part in (programs[:half], programs[half:]):
@@ -83,7 +88,8 @@ def judge(
         tally.programs += 1
         wrong = _compared(program, pixels, environment, found, tally)
         if wrong:
-            tally.failures.append(Failure(program, f"{wrong[0]}\n{shown(program)}"))
+            text = f"{wrong[0]}\n{shown(program)}"
+            tally.failures.append(Failure(program, pixels, environment, text))
 
 
 def _compared(

