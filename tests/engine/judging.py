@@ -36,7 +36,6 @@ class Tally:
     interval (the bits of that number); left out, by what they rest on; and unbounded."""
 
     programs: int = 0
-    refused: int = 0
     values: int = 0
     agreed: Counter[int] = field(default_factory=Counter)
     disputed: Counter[str] = field(default_factory=Counter)
@@ -50,9 +49,7 @@ class Tally:
 
         exact, close = self.agreed[0], sum(n for bits, n in self.agreed.items() if 0 < bits <= 4)
         lines = [
-            f"{self.programs:,} programs, {len(self.failures)} wrong",
-            f"{self.refused:,} more that the reference refuses",
-            f"{self.values:,} values",
+            f"{self.programs:,} programs, {self.values:,} values; {len(self.failures)} are wrong",
             f"agree: {share(self.agreed.total())}",
             f"  of intervals of one float, or NaN: {share(exact)}",
             f"  of up to 16 floats: {share(close)}",

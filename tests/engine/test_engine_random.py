@@ -7,6 +7,7 @@ and prints what became of them.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from random import Random
@@ -73,10 +74,9 @@ def test_random_programs(tmp_path: Path, request: pytest.FixtureRequest) -> None
     pytest.importorskip("iccdev")
     count = max(SHORT, request.config.getoption("--programs"))
     tally = Tally()
-    for number in range(-(-count // BATCH)):
-        seeds = range(number * BATCH, min(count, (number + 1) * BATCH))
-        batch = [p for p in (random_program(seed, NAMES) for seed in seeds) if accepted(p)]
-        tally.refused += len(seeds) - len(batch)
+    drawn = filter(accepted, (random_program(seed, NAMES) for seed in itertools.count()))
+    for number, start in enumerate(range(0, count, BATCH)):
+        batch = list(itertools.islice(drawn, min(BATCH, count - start)))
         pixels, variables = of_batch(number)
         judge(tmp_path, batch, pixels, variables, tally)
         if len(tally.failures) > 10:

@@ -7,7 +7,7 @@ Measured with iccdev 0.1.1 and followed by our engine:
 - `min` and `max` of two values are `vmin` and `vmax`; of three and more, a NaN at the bottom stays;
 - `mod` is 0 for divisors below 1e-12; `solv` finds no solution where |determinant| < 1e-8;
 - `ctop`, `ptoc`, `tLab` and `tXYZ` are float32 but for the linear parts of the latter two; so are
-  the differences that become a and b.
+  the differences that become a and b;
 - a `sel` whose last body is empty is refused where it ends a block, as `portability` says.
 Not followed: `rond` of an infinity is 10000 there; `eq` and `rnum` know one pattern of NaN only.
 """
