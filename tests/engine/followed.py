@@ -11,16 +11,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from interval_elements import bound_element
+from interval_elements import bound_element, values_of
 from interval_functions import FIXED, moved
 from interval_rules import bound
 from intervals import Floats, Interval, at, exact, place
 
 from brdfc.calc.curves import Curve, CurveSet, FormulaSegment, SegmentedCurve
 from brdfc.calc.program import Element, Matrix, Program
-from brdfc.engine.curves import apply_curves
 from brdfc.engine.kernels import compute
-from brdfc.engine.tables import apply_table
 from brdfc.engine.trace import Source, Trace, Value
 
 
@@ -56,7 +54,7 @@ class Followed(Trace):
     def element(self, element: Element, values: Sequence[Value]) -> list[Value]:
         if isinstance(element, (Program, Matrix)):
             return super().element(element, values)
-        found = self.call(element, [self.of(v) for v in values])
+        found = self.called(element, [self.of(v) for v in values])
         return [self.hold(element.signature, result) for result in found]
 
     def known_value(self, values: Any) -> Any:
@@ -65,7 +63,7 @@ class Followed(Trace):
     def operation(self, name: str, *arguments: Any) -> Any:
         raise NotImplementedError
 
-    def call(self, element: Any, inputs: list[Any]) -> list[Any]:
+    def called(self, element: Any, inputs: list[Any]) -> list[Any]:
         raise NotImplementedError
 
 
@@ -79,7 +77,7 @@ class Bounds(Followed):
     def operation(self, name: str, *arguments: Interval) -> Interval:
         return bound(name, *arguments)
 
-    def call(self, element: Any, inputs: list[Interval]) -> list[Interval]:
+    def called(self, element: Any, inputs: list[Interval]) -> list[Interval]:
         return bound_element(element, inputs)
 
 
@@ -93,10 +91,8 @@ class Engine(Followed):
     def operation(self, name: str, *arguments: Floats) -> Floats:
         return np.asarray(compute(name, *arguments))
 
-    def call(self, element: Any, inputs: list[Floats]) -> list[Floats]:
-        if isinstance(element, CurveSet):
-            return apply_curves(element, inputs)
-        return apply_table(element, inputs)
+    def called(self, element: Any, inputs: list[Floats]) -> list[Floats]:
+        return values_of(element, inputs)
 
 
 @dataclass
@@ -112,8 +108,8 @@ class Nearby(Engine):
         ulps = self.random.integers(-1, 2, shape)
         return moved(name, FIXED[name](*arguments), arguments, ulps)[0]
 
-    def call(self, element: Any, inputs: list[Floats]) -> list[Floats]:
-        found = super().call(element, inputs)
+    def called(self, element: Any, inputs: list[Floats]) -> list[Floats]:
+        found = super().called(element, inputs)
         if not isinstance(element, CurveSet):
             return found
         return [

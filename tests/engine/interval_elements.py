@@ -42,8 +42,7 @@ from brdfc.calc.curves import (
     SegmentedCurve,
 )
 from brdfc.calc.tables import LookupTable
-from brdfc.engine.curves import apply_curves
-from brdfc.engine.tables import apply_table
+from brdfc.engine.interpreter import run
 
 CURVE_ULPS = 1
 HALF_UNIT = 2.0**-24
@@ -58,6 +57,12 @@ def bound_element(element: CurveSet | LookupTable, inputs: Sequence[Interval]) -
     return _table(element, inputs)
 
 
+def values_of(element: CurveSet | LookupTable, inputs: Sequence[Floats]) -> list[Floats]:
+    """What our engine gives for one value of each input."""
+    results = run(element, np.stack(np.broadcast_arrays(*inputs), axis=-1), {})
+    return list(np.moveaxis(results, -1, 0))
+
+
 # ---------------------------------------------------------------- curves
 
 
@@ -69,7 +74,7 @@ def _curve(curve: Curve, x: Interval) -> Interval:
 
 
 def _value(curve: Curve, x: Floats) -> Floats:
-    return apply_curves(CurveSet((curve,)), [np.asarray(x, np.float32)])[0]
+    return values_of(CurveSet((curve,)), [x])[0]
 
 
 def _lines(curve: Curve, x: Interval, points: Floats, first: float, last: float) -> Interval:
@@ -174,7 +179,7 @@ def _table(table: LookupTable, inputs: Sequence[Interval]) -> list[Interval]:
     single = reduce(np.logical_and, [x.single for x in inputs])
     rests = reduce(np.bitwise_or, [x.disputed for x in inputs])
     found = []
-    for channel, value in enumerate(apply_table(table, [x.low for x in inputs])):
+    for channel, value in enumerate(values_of(table, [x.low for x in inputs])):
         values = points[..., channel]
         # Weights, products and sums are rounded, and so are positions.
         reach = np.abs(values).max() * HALF_UNIT * (2**table.inputs + 8)

@@ -21,7 +21,7 @@ from engine_reference import encoded
 from followed import Bounds, Engine, Nearby, Wrong
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from interval_elements import bound_element
+from interval_elements import bound_element, values_of
 from interval_functions import FIXED, moved
 from interval_rules import RULES, bound
 from intervals import Interval, at, enclosing, place
@@ -29,13 +29,10 @@ from judging import Failure, Tally, judge
 from shrinking import accepted, smallest
 from special_pixels import special_pixels
 
-from brdfc.calc.curves import CurveSet
 from brdfc.calc.program import Element, Program
 from brdfc.calc.text import disassemble
-from brdfc.engine.curves import apply_curves
 from brdfc.engine.interpreter import run
 from brdfc.engine.kernels import BINARY, FOLDED, INNER, UNARY, compute
-from brdfc.engine.tables import apply_table
 from brdfc.source.errors import BrdfcError
 
 FUNCTIONS = (*(name for name in FIXED if name not in INNER), "gama", "ctop", "ptoc", "tLab", "tXYZ")
@@ -176,7 +173,7 @@ def test_what_is_between_stays_between_in_elements(draw: Callable[..., Element])
             pairs = [(clamped(x), np.clip(np.nan_to_num(v), 0, 1)) for x, v in pairs]
         with np.errstate(all="ignore"):
             found = bound_element(element, [interval for interval, _ in pairs])
-            results = engine_of(element)([value for _, value in pairs])
+            results = values_of(element, [value for _, value in pairs])
             for interval, result in zip(found, results, strict=True):
                 wrong = ~interval.contains(result) & (interval.disputed == 0)
                 assert not wrong.any(), (number, element)
@@ -185,11 +182,6 @@ def test_what_is_between_stays_between_in_elements(draw: Callable[..., Element])
 def clamped(x: Interval) -> Interval:
     low, high = (np.clip(v, np.float32(0), np.float32(1)) for v in (x.low, x.high))
     return Interval(np.where(x.nan, np.float32(0), low), high, np.zeros_like(x.nan))
-
-
-def engine_of(element: Element) -> Callable[[list[np.ndarray]], list[np.ndarray]]:
-    apply = apply_curves if isinstance(element, CurveSet) else apply_table
-    return lambda values: apply(element, values)
 
 
 # ---------------------------------------------------------------- the judgement
