@@ -229,8 +229,6 @@ INNER: dict[str, Kernel] = {
     "lab root": _root,
     "lab cube": _cube,
     "lab lightness": _single(lambda fy: 116 * fy - 16),
-    "lab a": _single(lambda fx, fy: 500 * (fx - fy)),
-    "lab b": _single(lambda fy, fz: 200 * (fy - fz)),
     "lab fx": _single(lambda a, fy: a / 500 + fy),
     "lab fz": _single(lambda b, fy: fy - b / 200),
 }
@@ -254,7 +252,9 @@ def _cartesian(apply: Apply, radius: Any, hue: Any) -> tuple[Any, ...]:
 def _to_lab(apply: Apply, *xyz: Any) -> tuple[Any, ...]:
     """CIELAB of XYZ relative to white."""
     fx, fy, fz = (apply("lab root", v) for v in xyz)
-    return apply("lab lightness", fy), apply("lab a", fx, fy), apply("lab b", fy, fz)
+    a = apply("mul", apply("sub", fx, fy), np.float32(500))
+    b = apply("mul", apply("sub", fy, fz), np.float32(200))
+    return apply("lab lightness", fy), a, b
 
 
 def _to_xyz(apply: Apply, lightness: Any, a: Any, b: Any) -> tuple[Any, ...]:

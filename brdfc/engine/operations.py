@@ -190,13 +190,6 @@ def _cube(lanes: Lanes, f: str) -> str:
     return lanes.pick("F", lanes.test("ogt", "D", exact, FOOT), found, 0.0)
 
 
-def _scaled(operation: str, factor: float) -> Emit:
-    """(x - y) factor, in float64."""
-    return _in_float64(
-        lambda lanes, x, y: lanes.do(operation, "D", lanes.do("fsub", "D", x, y), factor)
-    )
-
-
 OPERATORS: dict[str, Emit] = {
     **{name: _in_float64(function) for name, function in FUNCTIONS.items()},
     "add": _plain("fadd"),
@@ -240,8 +233,6 @@ OPERATORS: dict[str, Emit] = {
     "lab lightness": _in_float64(
         lambda lanes, fy: lanes.do("fsub", "D", lanes.do("fmul", "D", fy, 116.0), 16.0)
     ),
-    "lab a": _scaled("fmul", 500.0),
-    "lab b": _scaled("fmul", 200.0),
     "lab fx": _in_float64(
         lambda lanes, a, fy: lanes.do("fadd", "D", lanes.do("fdiv", "D", a, 500.0), fy)
     ),

@@ -6,83 +6,114 @@ members, so there is one generator.
 """
 
 import random
-import struct
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
+from calc.random_elements import ELEMENTS, TAME, Choose, singles
 from hypothesis import strategies as st
 
 from brdfc.calc.operators import OPERATORS, Operand
 from brdfc.calc.program import Block, If, Instruction, Matrix, Op, Program, Select
 
-Choose = Callable[[Sequence[Any]], Any]
-
 INPUTS, OUTPUTS, TEMPORARIES = 4, 3, 6
 DEEPEST = 12
 
 # Subnormals, the largest, both zeros, numbers that need nine digits, halves.
-CONSTANTS = tuple(
-    struct.unpack("f", struct.pack("f", value))[0]
-    for value in (
-        *(0.0, -0.0, 1.0, -1.0, 0.5, -0.5, 1.5, 2.0, 3.0, 0.1, -0.7, 100.0, 1e-5, 0.333333343),
-        *(1e-45, -1e-45, 1.17549421e-38, 3.40282347e38, -3.40282347e38, 16777217.0, 0.785398185),
-        *(8388608.5, 2147483648.0, 123456.789, 1.00000012, 0.999999940, 6.10351562e-05),
-    )
+CONSTANTS = singles(
+    *(0.0, -0.0, 1.0, -1.0, 0.5, -0.5, 1.5, 2.0, 3.0, 0.1, -0.7, 100.0, 1e-5, 0.333333343),
+    *(1e-45, -1e-45, 1.17549421e-38, 3.40282347e38, -3.40282347e38, 16777217.0, 0.785398185),
+    *(8388608.5, 2147483648.0, 123456.789, 1.00000012, 0.999999940, 6.10351562e-05),
 )
 VARIABLES = ("thti", "azi", "x", "ä", "a b", "12", "deadbeef"[:4], "true", "ndef", "")
 
 MATRICES = (
-    Matrix(3, 3, (0.5, 0.25, -1.0, 0.1, 0.0, 2.0, -0.75, 0.3, 1.0), (0.0, 0.125, -0.3)),
-    Matrix(2, 1, (0.7, -0.2), (0.1,)),
-)
-MATRICES = tuple(
-    Matrix(
-        m.inputs,
-        m.outputs,
-        tuple(struct.unpack("f", struct.pack("f", v))[0] for v in m.values),
-        tuple(struct.unpack("f", struct.pack("f", v))[0] for v in m.offsets),
-    )
-    for m in MATRICES
+    Matrix(3, 3, singles(0.5, 0.25, -1.0, 0.1, 0.0, 2.0, -0.75, 0.3, 1.0), singles(0, 0.125, -0.3)),
+    Matrix(2, 1, singles(0.7, -0.2), singles(0.1)),
 )
 INNER = Program(
     2, 3, (Op("in", 0, 2), Op("copy", 2, 1), Op("mul", 1), Op("tsav", 0, 3), Op("out", 0, 3))
 )
-ELEMENTS = (*MATRICES, INNER, INNER)
-CALLS = (("mtx", 0), ("mtx", 1), ("elem", 0), ("elem", 1), ("calc", 2), ("calc", 3), ("elem", 3))
+SHARED = (*MATRICES, INNER, INNER)
+"""Elements that every program has; the others are drawn."""
+CALLS = {"matf": "mtx", "cvst": "curv", "clut": "clut", "xclt": "clut", "calc": "calc"}
+KINDS = ("matf", "cvst", "clut", "calc")
+NESTING = 2
+"""Levels of calculators in calculators."""
 
 MOVES = ("copy", "rotl", "rotr", "posd", "flip", "pop", "tran")
 EVERY = tuple(
     name
     for name, operator in OPERATORS.items()
-    if operator.operand not in (Operand.SPAN, Operand.ELEMENT) and name not in (*MOVES, "scnt")
+    if operator.operand not in (Operand.SPAN, Operand.ELEMENT) and name not in MOVES
 )
 
 
+@dataclass
 class _Generator:
-    """Draws instructions while it knows how deep the stack is on every path."""
+    """Draws instructions while it knows how deep the stack is on every path.
 
-    def __init__(self, choose: Choose, names: Sequence[str]) -> None:
-        self.choose = choose
-        self.names = names
-        self.depth = 0
-        self.written: set[int] = set()
+    names: operators, drawn as often as they stand there. kinds: of the sub-elements that are drawn.
+    depth: the least on any path; even: whether all paths have it. written: temporaries that all
+    paths have written.
+    """
+
+    choose: Choose
+    names: Sequence[str]
+    kinds: Sequence[str]
+    nesting: int = NESTING
+    inputs: int = INPUTS
+    depth: int = 0
+    even: bool = True
+    written: set[int] = field(default_factory=set)
+    elements: tuple[Any, ...] = SHARED
 
     def number(self, low: int, high: int) -> int:
         return int(self.choose(range(low, high + 1)))
 
-    def block(self, length: int, nesting: int) -> Block:
-        return tuple(self.instruction(nesting) for _ in range(self.number(0, length)))
+    def program(self, outputs: int, length: int) -> Program:
+        kinds = self.kinds if self.nesting else [k for k in self.kinds if k != "calc"]
+        if kinds:
+            self.elements += tuple(
+                self.element(self.choose(kinds)) for _ in range(self.number(0, 3))
+            )
+        body = list(self.block(length, 3))
+        while self.depth < outputs:
+            body.append(self.push())
+        body.append(Op("out", 0, outputs))
+        return Program(self.inputs, outputs, tuple(body), self.elements)
 
-    def instruction(self, nesting: int) -> Instruction:
+    def element(self, kind: str) -> Any:
+        if kind != "calc":
+            return ELEMENTS[kind](self.choose)
+        inputs, outputs = self.number(1, 3), self.number(1, 3)
+        inner = _Generator(self.choose, self.names, self.kinds, self.nesting - 1, inputs)
+        return inner.program(outputs, 6)
+
+    def block(self, length: int, levels: int) -> Block:
+        """Up to so many steps: whether there is another is drawn before each, so that any of them
+        can be left out of what fails."""
+        found: list[Instruction] = []
+        for _ in range(length):
+            if not self.choose((False, *(True,) * length)):
+                break
+            found += self.step(levels)
+        return tuple(found)
+
+    def step(self, levels: int) -> Sequence[Instruction]:
         kinds = ["push", "push", "operator", "operator", "operator", "move", "temporary", "call"]
-        if nesting:
+        if levels:
             kinds += ["if", "select"]
         kind = self.choose(kinds)
         if self.depth > DEEPEST:
-            return self.take("pop", self.number(1, self.depth), 0)
-        if self.depth < 1 or kind == "push":
-            return self.push()
-        return getattr(self, f"_{kind}")(nesting)
+            return [self.take("pop", self.number(1, self.depth), 0)]
+        if kind == "push" or self.depth < 1:
+            return [self.push()]
+        if kind == "call":
+            return self.call()
+        if kind in ("if", "select"):
+            return [getattr(self, f"_{kind}")(levels)]
+        return [getattr(self, f"_{kind}")()]
 
     def take(self, name: str, first: int, second: int) -> Op:
         popped, pushed = OPERATORS[name].effect(first, second)
@@ -92,29 +123,31 @@ class _Generator:
 
     def push(self) -> Op:
         if self.choose((True, False)):
-            start = self.number(0, INPUTS - 1)
-            return self.take("in", start, self.number(1, INPUTS - start))
-        self.depth += 1
-        return Op("data", value=self.choose(CONSTANTS))
+            start = self.number(0, self.inputs - 1)
+            return self.take("in", start, self.number(1, self.inputs - start))
+        return self.constant(self.choose(self.choose((TAME, TAME, TAME, CONSTANTS))))
 
-    def _operator(self, _nesting: int) -> Op:
+    def constant(self, value: float) -> Op:
+        self.depth += 1
+        return Op("data", value=value)
+
+    def _operator(self) -> Op:
         name = self.choose(self.names)
-        operand = OPERATORS[name].operand
-        if operand is Operand.CONSTANT:
+        operand, effect = OPERATORS[name].operand, OPERATORS[name].effect
+        if operand is Operand.CONSTANT or (name == "scnt" and not self.even):
             return self.push()
         if operand is Operand.SIGNATURE:
             self.depth += 2
             return Op(name, signature=self.choose(VARIABLES))
         if operand is Operand.NONE:
             return self.take(name, 0, 0)
-        effect = OPERATORS[name].effect
         if operand is Operand.SHAPE:
             return self.take(name, 3, 3) if effect(3, 3)[0] <= self.depth else self.push()
         counts = range(2 if operand is Operand.FOLD else 1, 6)
         fitting = [n for n in counts if effect(n, 0)[0] <= self.depth]
         return self.take(name, self.choose(fitting), 0) if fitting else self.push()
 
-    def _move(self, _nesting: int) -> Op:
+    def _move(self) -> Op:
         name = self.choose(MOVES)
         top = self.number(1, self.depth)
         if name in ("copy", "posd"):
@@ -128,7 +161,7 @@ class _Generator:
             return self.take(name, top, 0) if top > 1 else self.push()
         return self.take(name, top, 0)
 
-    def _temporary(self, _nesting: int) -> Op:
+    def _temporary(self) -> Op:
         start = self.number(0, TEMPORARIES - 1)
         count = self.number(1, min(TEMPORARIES - start, self.depth))
         name = self.choose(("tput", "tsav", "tget"))
@@ -139,54 +172,63 @@ class _Generator:
         self.written |= set(range(start, start + count))
         return self.take(name, start, count)
 
-    def _call(self, _nesting: int) -> Op:
-        name, index = self.choose(CALLS)
-        element = ELEMENTS[index]
-        if element.inputs > self.depth:
-            return self.push()
-        self.depth += element.outputs - element.inputs
-        return Op(name, index)
+    def call(self) -> Sequence[Instruction]:
+        """A call; inputs of a lookup table are clamped before, which not all releases do."""
+        index = self.number(0, len(self.elements) - 1)
+        element = self.elements[index]
+        n = element.inputs
+        if n > self.depth:
+            return [self.push()]
+        clamps: list[Instruction] = []
+        if CALLS[element.signature] == "clut":
+            for bound, name in ((0.0, "vmax"), (1.0, "vmin")):
+                clamps += [Op("data", value=bound), Op("copy", 1, n - 1)][: min(n, 2)]
+                clamps.append(Op(name, n))
+        self.depth += element.outputs - n
+        return [*clamps, Op(self.choose((CALLS[element.signature], "elem")), index)]
 
-    def _bodies(self, count: int, nesting: int, *, complete: bool) -> list[Block]:
+    def _bodies(self, count: int, levels: int, *, complete: bool) -> list[Block]:
         before, written = self.depth, self.written
         depths, sets, bodies = [], [], []
         for _ in range(count):
             self.depth, self.written = before, set(written)
-            bodies.append(self.block(5, nesting - 1))
+            bodies.append(self.block(5, levels - 1))
             depths.append(self.depth)
             sets.append(self.written)
         if not complete:
             depths.append(before)
             sets.append(written)
+        self.even &= len(set(depths)) == 1
         self.depth, self.written = min(depths), set.intersection(*sets)
         return bodies
 
-    def _if(self, nesting: int) -> If:
+    def _if(self, levels: int) -> If:
         self.depth -= 1
         otherwise = self.choose((True, False))
-        bodies = self._bodies(1 + otherwise, nesting, complete=otherwise)
+        bodies = self._bodies(1 + otherwise, levels, complete=otherwise)
         return If(bodies[0], bodies[1] if otherwise else None)
 
-    def _select(self, nesting: int) -> Select:
+    def _select(self, levels: int) -> Select:
         self.depth -= 1
         cases, default = self.number(1, 4), self.choose((True, False))
-        bodies = self._bodies(cases + default, nesting, complete=default)
+        bodies = self._bodies(cases + default, levels, complete=default)
         return Select(tuple(bodies[:cases]), bodies[cases] if default else None)
-
-    def program(self, length: int) -> Program:
-        body = list(self.block(length, 3))
-        while self.depth < OUTPUTS:
-            body.append(self.push())
-        body.append(Op("out", 0, OUTPUTS))
-        return Program(INPUTS, OUTPUTS, tuple(body), ELEMENTS)
 
 
 @st.composite
-def programs(draw: st.DrawFn, names: Sequence[str] = EVERY) -> Program:
+def programs(
+    draw: st.DrawFn, names: Sequence[str] = EVERY, kinds: Sequence[str] = KINDS, length: int = 20
+) -> Program:
     """Programs of 4 channels in and 3 out, with sub-elements."""
-    return _Generator(lambda options: draw(st.sampled_from(options)), names).program(20)
+
+    def choose(options: Sequence[Any]) -> Any:
+        return options[draw(st.integers(0, len(options) - 1))]
+
+    return _Generator(choose, names, kinds).program(OUTPUTS, length)
 
 
-def random_program(seed: int, names: Sequence[str] = EVERY, length: int = 30) -> Program:
+def random_program(
+    seed: int, names: Sequence[str] = EVERY, kinds: Sequence[str] = KINDS, length: int = 30
+) -> Program:
     """The program of a seed."""
-    return _Generator(random.Random(seed).choice, names).program(length)
+    return _Generator(random.Random(seed).choice, names, kinds).program(OUTPUTS, length)

@@ -6,7 +6,8 @@ Measured with iccdev 0.1.1 and followed by our engine:
   all offsets are 0 in those shapes;
 - `min` and `max` of two values are `vmin` and `vmax`; of three and more, a NaN at the bottom stays;
 - `mod` is 0 for divisors below 1e-12; `solv` finds no solution where |determinant| < 1e-8;
-- `ctop`, `ptoc`, `tLab` and `tXYZ` are float32 but for the linear parts of the latter two.
+- `ctop`, `ptoc`, `tLab` and `tXYZ` are float32 but for the linear parts of the latter two; so are
+  the differences that become a and b;
 - a `sel` whose last body is empty is refused where it ends a block, as `portability` says.
 Not followed: `rond` of an infinity is 10000 there; `eq` and `rnum` know one pattern of NaN only.
 """
@@ -21,6 +22,7 @@ from brdfc.calc.portability import portability
 from brdfc.calc.program import Matrix, Program
 from brdfc.calc.text import assemble, disassemble
 from brdfc.engine.interpreter import run
+from brdfc.engine.kernels import ROOT_ABOVE
 from brdfc.source.errors import LinkError
 
 pytest.importorskip("iccdev")
@@ -36,8 +38,9 @@ SPECIAL = np.array(
 
 
 def accepted(seeds, names, length=30):
-    """The random programs that the reference does not refuse."""
-    programs = [random_program(seed, names, length) for seed in seeds]
+    """The random programs that the reference does not refuse; without curves, which are powers."""
+    kinds = ("matf", "clut", "calc")
+    programs = [random_program(seed, names, kinds, length) for seed in seeds]
     return [p for p in programs if not any("rejected" in finding for finding in portability(p))]
 
 
@@ -107,7 +110,7 @@ def test_single_operators(tmp_path):
             roots = np.cbrt(np.abs(pixels[sound]).max(axis=1, keepdims=True)) + 80
             apart = np.abs(theirs[sound].astype(float) - ours[sound])
             assert (apart <= 1000 * 2.0**-23 * roots).all()
-            continue
+            ours, theirs = (v[(pixels < ROOT_ABOVE).all(axis=1)] for v in (ours, theirs))
         apart = ulps(ours, theirs)
         assert apart.max() <= (name in TRANSCENDENTAL), (name, pixels[apart.argmax() // 3])
         zero = (ours == 0) & (theirs == 0)
