@@ -56,7 +56,9 @@ def _curve_node(curve: Curve, calculator: Callable[[bytes], Node]) -> Node:
         lines = rows(curve.samples.values.tolist(), _ROW)
         return Node("SingleSampledCurve", attributes, lines=lines)
     if isinstance(curve, OpaqueCurve):
-        _, _, size, first, last, extension, _ = _CALCULATOR_CURVE.unpack_from(curve.data)
+        _, zero, size, first, last, extension, nothing = _CALCULATOR_CURVE.unpack_from(curve.data)
+        if zero or nothing or extension > 1 or not (math.isfinite(first) and math.isfinite(last)):
+            raise ProgramError("a curve that could not be read again")
         attributes = {
             "FirstEntry": number(first),
             "LastEntry": number(last),
