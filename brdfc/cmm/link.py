@@ -170,8 +170,9 @@ def connect(
     MVIS, "A2B1" or "bAB0" of a profile of device values. extrapolate: take variables outside the
     ranges that the profile states too. engine: what runs it, a choice.Engine or its name. threads:
     as many as there are processors where None.
-    Raises ProfileError for what is no profile, LinkError for profiles that do not connect,
-    ValueGivenError for variables that do not exist or are outside their range.
+    Raises ProfileError for what is no profile, ProgramError for a program that cannot be proven
+    safe, LinkError for profiles that do not connect, ValueGivenError for variables that do not
+    exist or are outside their range.
     """
     loaded = [_profile(p) for p in profiles]
     if len(loaded) == 1:
@@ -197,6 +198,7 @@ def _pair(
     _check_class(destination, "mvis", "second", "an MVIS")
     first, second = pipeline(source, "A2M0"), pipeline(destination, transform)
     check_colours(destination, transform, second.outputs)
+    transform_variables(source, "A2M0")  # a MID's programs are proven, too
     given, wanted = _names(source), _names(destination)
     if (len(given), len(wanted)) != (first.outputs, second.inputs):
         raise LinkError("the channel names ('mcta') do not match the transforms' channels")

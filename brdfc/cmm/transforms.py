@@ -14,7 +14,7 @@ from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import NO_SPACE
 from brdfc.icc.types import Pipeline
 from brdfc.profiles.metadata import Described, describe
-from brdfc.source.errors import LinkError, ProgramError
+from brdfc.source.errors import LinkError
 
 Values = NDArray[np.float32]
 
@@ -85,13 +85,14 @@ def check_colours(profile: Profile, transform: str, outputs: int) -> None:
 def transform_variables(
     profile: Profile, transform: str
 ) -> tuple[tuple[str, Described | None], ...]:
-    """The variables a transform reads: signature, and its description if it has one."""
+    """The variables a transform reads: signature, and its description if it has one.
+
+    Its programs are proven on the way; ProgramError names the element and the operation.
+    """
     described = {d.signature: d for d in describe(profile, "env")}
     signatures: dict[str, None] = {}
-    for element in pipeline(profile, transform).elements:
+    for index, element in enumerate(pipeline(profile, transform).elements):
         if isinstance(element, Program):
-            try:
-                signatures |= dict.fromkeys(verify(element).variables)
-            except ProgramError as error:
-                raise LinkError(f"the profile's program is refused: {error}") from error
+            facts = verify(element, f"tag '{transform}', element {index}")
+            signatures |= dict.fromkeys(facts.variables)
     return tuple((s, described.get(s)) for s in signatures if s not in ("true", "ndef"))
