@@ -132,7 +132,7 @@ def _timed(
 def _known(mvis: Path, variables: dict[str, float]) -> dict[str, float]:
     """The variables that a profile has."""
     profile = Profile.load(mvis)
-    known = {name for name, _ in variables_of(profile, profile.tags["M2B0"].elements)}
+    known = {name for name, _ in variables_of(profile, "M2B0", profile.tags["M2B0"].elements)}
     return {n: v for n, v in variables.items() if n in known}
 
 

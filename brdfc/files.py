@@ -1,4 +1,8 @@
-"""Output files appear whole or not at all: written beside their final name, then renamed."""
+"""Output files appear whole or not at all: written beside their final name, then renamed.
+
+A process that is killed leaves the file it was at under a hidden name, `.NAME.xxxxxxxx.part`, which
+nothing reads and no later run takes for a result; it may be removed.
+"""
 
 from __future__ import annotations
 
@@ -15,9 +19,9 @@ from brdfc.source.errors import BrdfcError
 def whole_file(path: str | Path) -> Iterator[Path]:
     """A temporary path beside `path`; renamed to it when the block ends, removed when it fails.
 
-    Raises BrdfcError when the folder cannot be written.
+    Raises BrdfcError when the folder cannot be written, or what is there is no file.
     """
-    final = Path(path)
+    final = place_of(path)
     try:
         handle, name = tempfile.mkstemp(dir=final.parent, prefix=f".{final.name}.", suffix=".part")
     except OSError as error:
@@ -36,6 +40,19 @@ def whole_file(path: str | Path) -> Iterator[Path]:
         raise BrdfcError(f"cannot be written: {reason}", where=str(path)) from error
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def place_of(path: str | Path) -> Path:
+    """Where an output comes to lie: what a link leads to, not the link; BrdfcError where something
+    is that cannot be replaced as a file can, such as a folder or a device."""
+    final = Path(os.path.realpath(path))
+    if final.exists() and not final.is_file():
+        raise BrdfcError(
+            "cannot be written: it is no file, and an output replaces what is there",
+            where=str(path),
+            hint="name a file",
+        )
+    return final
 
 
 def write_whole(path: str | Path, data: bytes) -> None:

@@ -10,6 +10,7 @@ import struct
 from collections.abc import Sequence
 
 from brdfc.calc.operators import (
+    ARGUMENTS,
     BY_SIGNATURE,
     CASE,
     DEFAULT,
@@ -155,6 +156,8 @@ class _Decoder:
             return Op(operator.name, signature=word.decode("latin-1").rstrip(" "))
         (_, first_less), (_, second_less) = HALVES[operand]
         first, second = struct.unpack(">HH", word)
+        if ARGUMENTS[operand] == 1:
+            second = 0  # a half that is not used means nothing
         return Op(operator.name, first + first_less, second + second_less)
 
 

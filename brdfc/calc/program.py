@@ -21,6 +21,10 @@ MAX_OPERATIONS = 1 << 17
 largest of the ICC's samples has 80,000."""
 
 
+MAX_TEMPORARIES = 65536
+"""Temporaries of a calculator: their numbers have 16 bits."""
+
+
 @dataclass(frozen=True)
 class Op:
     """One operator with its operand.

@@ -15,6 +15,7 @@ from brdfc.calc.facts import Facts, State, joined
 from brdfc.calc.operators import CALLED_KINDS, Operand
 from brdfc.calc.program import (
     MAX_NESTING,
+    MAX_TEMPORARIES,
     Block,
     Element,
     If,
@@ -127,7 +128,8 @@ class _Checker:
 
     def span(self, op: Op, state: State) -> None:
         end, mask = op.first + op.second, (1 << op.second) - 1
-        limit = {"in": self.program.inputs, "out": self.program.outputs}.get(op.name, 65536)
+        channels = {"in": self.program.inputs, "out": self.program.outputs}
+        limit = channels.get(op.name, MAX_TEMPORARIES)
         if end > limit:
             what = "temporary" if op.name.startswith("t") else "channel"
             raise self.fail(f"'{op.name}' reaches {what} {end - 1}; there are {limit}")

@@ -57,8 +57,9 @@ def connect(
     variables outside the ranges that the profiles state too. engine: what runs it, a choice.Engine
     or its name. threads: as many as there are processors where None. interpolation: of lookup
     tables of three inputs, a tables.Interpolation or its name; others are always linear.
-    Raises ProfileError for what is no profile, LinkError for profiles that do not connect,
-    ValueGivenError for variables that do not exist or are outside their range.
+    Raises ProfileError for what is no profile, ProgramError for a program that cannot be proven
+    safe, LinkError for profiles that do not connect, ValueGivenError for variables that do not
+    exist or are outside their range.
     """
     loaded = [_profile(p) for p in profiles]
     if not loaded:

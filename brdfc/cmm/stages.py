@@ -62,7 +62,8 @@ class Space(NamedTuple):
 @dataclass(frozen=True)
 class Stage:
     """transform: the tag, or "matrix" or "gray" for a profile of tone curves. Colours are X, Y, Z
-    (see connection.py), whatever the profile's connection space."""
+    (see connection.py), whatever the profile's connection space. variables: those that its programs
+    read."""
 
     profile: Profile
     transform: str
@@ -70,11 +71,7 @@ class Stage:
     gives: Space
     inputs: int
     elements: tuple[Element, ...]
-
-    @property
-    def variables(self) -> Variables:
-        """The variables that its programs read."""
-        return variables_of(self.profile, self.elements)
+    variables: Variables = ()
 
 
 class Role(NamedTuple):
@@ -122,7 +119,8 @@ def stage_of(
     """The stage of a profile in a chain.
 
     given: what comes before it, if anything. following: the profile after it. transform: the tag
-    that is asked for. Raises LinkError where the profile cannot stand here.
+    that is asked for. Raises LinkError where the profile cannot stand here, ProgramError for a
+    program that cannot be proven safe.
     """
     role = _role(profile, given, following)
     takes, gives = _spaces(profile, role)
@@ -141,7 +139,9 @@ def stage_of(
     if transform is not None and intent is None:
         wanted = Intent(int(found[3]))
     elements = _in_space(profile, found, tag, takes, gives, wanted)
-    return Stage(profile, found, takes, gives, tag.inputs, elements)
+    own = tag.elements if isinstance(tag, Pipeline) else ()
+    variables = variables_of(profile, found, own)
+    return Stage(profile, found, takes, gives, tag.inputs, elements, variables)
 
 
 def _role(profile: Profile, given: Space | None, following: Profile | None) -> Role:

@@ -11,7 +11,7 @@ from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import NO_SPACE
 from brdfc.icc.types import Pipeline
 from brdfc.profiles.metadata import Described, describe
-from brdfc.source.errors import LinkError, ProgramError
+from brdfc.source.errors import LinkError
 
 Transform = Pipeline | TableLut | StagedLut
 Variables = tuple[tuple[str, Described | None], ...]
@@ -37,16 +37,14 @@ def leads_to_reflectances(profile: Profile, transform: str) -> bool:
     return kind in ("M2S", "bDB") or (kind == "D2B" and profile.header.spectral_pcs != NO_SPACE)
 
 
-def variables_of(profile: Profile, elements: Iterable[Element]) -> Variables:
-    """The variables that the programs among a profile's elements read.
+def variables_of(profile: Profile, transform: str, elements: Iterable[Element]) -> Variables:
+    """The variables that the programs of a transform read.
 
-    Raises LinkError for a program that is refused.
+    Its programs are proven on the way; ProgramError names the element and the operation.
     """
     described = {d.signature: d for d in describe(profile, "env")}
     signatures: dict[str, None] = {}
-    for element in elements:
-        try:
-            signatures |= dict.fromkeys(verify(element).variables)
-        except ProgramError as error:
-            raise LinkError(f"the profile's program is refused: {error}") from error
+    for index, element in enumerate(elements):
+        facts = verify(element, f"tag '{transform}', element {index}")
+        signatures |= dict.fromkeys(facts.variables)
     return tuple((s, described.get(s)) for s in signatures if s not in ("true", "ndef"))

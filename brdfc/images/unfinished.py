@@ -12,7 +12,7 @@ from copy import deepcopy
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from brdfc.files import read_file, write_whole
+from brdfc.files import place_of, read_file, write_whole
 from brdfc.images.counts import Counts
 from brdfc.source.errors import BrdfcError, ImageError
 
@@ -73,7 +73,7 @@ def unfinished_file(target: str | Path, run: Mapping[str, str]) -> Iterator[Unfi
     run: what makes this run, by name. Raises ImageError where a run of something else was left
     there, or another process is at it.
     """
-    final = Path(target)
+    final = place_of(target)
     part, journal = (final.parent / f".{final.name}.{end}" for end in ("part", "journal"))
     try:
         file = os.open(part, os.O_RDWR | os.O_CREAT, 0o666)

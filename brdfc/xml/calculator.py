@@ -6,12 +6,12 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from brdfc.calc.program import MAX_NESTING, Element, Program
+from brdfc.calc.program import MAX_NESTING, MAX_TEMPORARIES, Element, Program
 from brdfc.calc.text import Parsed, parse
 from brdfc.xml.document import Node, read_document
 from brdfc.xml.folder import Folder
 from brdfc.xml.schema import check
-from brdfc.xml.scope import TEMPORARIES, Macro, Scope, Slice, Variable
+from brdfc.xml.scope import Macro, Scope, Slice, Variable
 from brdfc.xml.values import channels, integer
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
@@ -56,7 +56,7 @@ def _slices(node: Node, text: str, what: str) -> tuple[dict[str, Slice], int]:
         if found[1] in slices:
             node.fail(f"{what}: '{found[1]}' stands there twice")
         size = int(found[2] or 1)
-        if size < 1 or end + size > TEMPORARIES:
+        if size < 1 or end + size > MAX_TEMPORARIES:
             node.fail(f"{what}: '{word}' has an impossible size")
         slices[found[1]] = end, size
         end += size
@@ -111,12 +111,12 @@ class _Declarations:
         if name in self.scope.variables:
             node.fail(f"a variable '{name}' is declared already")
         members, end = _slices(node, node.text, "members")
-        size = max(1, end, integer(node, "Size", 1))
+        size = max(1, end, integer(node, "Size", 1, MAX_TEMPORARIES))
         position = integer(node, "Position") if "Position" in node.attributes else None
         if position and imported:
             node.fail("an imported variable has no Position")
-        if (position or 0) + size > TEMPORARIES:
-            node.fail(f"there are {TEMPORARIES} temporaries")
+        if (position or 0) + size > MAX_TEMPORARIES:
+            node.fail(f"there are {MAX_TEMPORARIES} temporaries")
         self.scope.variables[name] = Variable(size, members, position)
 
     def macro(self, node: Node, _imported: bool) -> None:

@@ -67,6 +67,7 @@ class ElementWriter:
     def _calculator(self, program: Program, names: Names) -> Node:
         temporaries = variables(program.body)
         attributes = _attributes(program)
+        names = names.within(program.inputs, program.outputs)
         if names.inputs:
             attributes["InputNames"] = declared(names.inputs)
         if names.outputs:
@@ -104,15 +105,25 @@ def _unknown_node(element: Element) -> Node:
     # The reference writes the attribute as Type and reads it as type.
     kind = signature_name(signature_bytes(element.signature))
     attributes = {"Type": kind, "type": kind, **_attributes(element)}
-    lines = hexadecimal_lines(encode_element(element)[HEADER:])
-    return Node("UnknownElement", attributes, lines=lines)
+    data = encode_element(element)
+    (reserved,) = struct.unpack_from(">I", data, 4)
+    if reserved:
+        attributes["Reserved"] = str(reserved)
+    return Node("UnknownElement", attributes, lines=hexadecimal_lines(data[HEADER:]))
+
+
+def _tint_head(inputs: int, outputs: int) -> bytes:
+    return struct.pack(">4sIHH", b"tint", 0, inputs, outputs)
 
 
 def _tint_node(element: Element) -> Node:
+    data = encode_element(element)
     try:
-        array = NumberArray.decode(encode_element(element)[HEADER:], "tint")
+        array = NumberArray.decode(data[HEADER:], "tint")
     except (ProfileError, KeyError):  # an array that is carried, and not well-formed
         return _unknown_node(element)
+    if data != _tint_head(element.inputs, element.outputs) + array.encode():
+        return _unknown_node(element)  # reserved words that are not 0
     inside = Node(TYPE_NAMES[array.kind], {}, [array_node(array)])
     return Node("TintArrayElement", _attributes(element), [inside])
 
@@ -207,7 +218,7 @@ def _read_tint(node: Node, folder: Folder) -> Element:
         node.fail("one array of numbers stands in a tint array")
     try:
         data = read_array(arrays[0], folder).encode()
-        return decode_element(struct.pack(">4sIHH", b"tint", 0, inputs, outputs) + data, node.tag)
+        return decode_element(_tint_head(inputs, outputs) + data, node.tag)
     except (ProfileError, ProgramError) as error:
         if "\n" in error.message:
             raise
@@ -221,7 +232,8 @@ def _read_unknown(node: Node) -> Element:
         kind = signature_of_name(name)
     except ProfileError as error:
         node.fail(error.message)
-    head = struct.pack(">4sIHH", kind, 0, inputs, outputs)
+    reserved = integer(node, "Reserved", 0, 0xFFFFFFFF)
+    head = struct.pack(">4sIHH", kind, reserved, inputs, outputs)
     try:
         return decode_element(head + hexadecimal(node), f"'{name}'")
     except ProgramError as error:

@@ -45,7 +45,7 @@ def header_node(header: Header) -> Node:
     children = []
     for row in _FIELDS:
         value = getattr(header, row.field)
-        if row.field in _OPTIONAL and value in _NOTHING:
+        if row.field in _OPTIONAL and repr(value) in _NOTHING:
             continue
         node = row.write(value)
         node.tag = row.tag
@@ -233,7 +233,8 @@ _FIELDS = (
         lambda node: int.from_bytes(hexadecimal(node)[:4], "big"),
     ),
 )
-_NOTHING = (0, "", bytes(4), bytes(16), SpectralRange())
+_NOTHING = set(map(repr, (0, "", bytes(4), bytes(16), SpectralRange())))
+"""By how they are written: a range that ends at -0 is not one of nothing but zeros."""
 _OPTIONAL = {
     *("device_subclass", "platform", "manufacturer", "model", "creator", "profile_id"),
     *("spectral_pcs", "spectral_range", "bispectral_range", "mcs", "reserved"),

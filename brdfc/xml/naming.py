@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from brdfc.calc.disassembly import Naming
-from brdfc.calc.program import Block, Op, walk
+from brdfc.calc.program import MAX_TEMPORARIES, Block, Op, walk
 
 Slice = tuple[int, int]
 """The first and how many."""
@@ -21,6 +21,17 @@ class Names:
 
     inputs: dict[str, Slice]
     outputs: dict[str, Slice]
+
+    def within(self, inputs: int, outputs: int) -> Names:
+        """Those of a side that has channels for them all: a damaged profile's may have fewer."""
+        return Names(
+            self.inputs if _end(self.inputs) <= inputs else {},
+            self.outputs if _end(self.outputs) <= outputs else {},
+        )
+
+
+def _end(slices: dict[str, Slice]) -> int:
+    return max((first + size for first, size in slices.values()), default=0)
 
 
 NO_NAMES = Names({}, {})
@@ -50,11 +61,12 @@ def declared(slices: dict[str, Slice]) -> str:
 
 
 def variables(body: Block) -> dict[str, Slice]:
-    """The temporaries of a main function as variables: those that are used together are one."""
+    """The temporaries of a main function as variables: those that are used together are one. What
+    reaches beyond the last temporary, in a program that cannot be run, stays a number."""
     spans = {
         (op.first, op.first + op.second)
         for op in walk(body)
-        if isinstance(op, Op) and op.name in _TEMPORARY
+        if isinstance(op, Op) and op.name in _TEMPORARY and op.first + op.second <= MAX_TEMPORARIES
     }
     merged: list[list[int]] = []
     for start, end in sorted(spans):

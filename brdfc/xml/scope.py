@@ -14,14 +14,21 @@ from dataclasses import dataclass, field
 from typing import NoReturn, TypeVar
 
 from brdfc.calc.operators import OPERATORS, Operand
-from brdfc.calc.program import MAX_NESTING, MAX_OPERATIONS, Block, Element, Op, encoded_length
+from brdfc.calc.program import (
+    MAX_NESTING,
+    MAX_OPERATIONS,
+    MAX_TEMPORARIES,
+    Block,
+    Element,
+    Op,
+    encoded_length,
+)
 from brdfc.calc.text import Parsed
 from brdfc.source.diagnostics import Diagnostic, did_you_mean
 from brdfc.source.errors import ProgramError
 from brdfc.source.span import Span
 
 T = TypeVar("T")
-TEMPORARIES = 65536
 Slice = tuple[int, int]
 """The first and how many."""
 
@@ -164,8 +171,8 @@ class Scope:
             if count < 1 or offset + count > size:
                 _fail(span, f"'{name}' has {size} values, none at {offset + count - 1}")
             first, size = first + offset, count
-        if first + size > TEMPORARIES:
-            _fail(span, f"there are {TEMPORARIES} temporaries")
+        if first + size > MAX_TEMPORARIES:
+            _fail(span, f"there are {MAX_TEMPORARIES} temporaries")
         return first, size
 
     def _variable(self, span: Span, name: str) -> Slice:
