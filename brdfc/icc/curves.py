@@ -9,6 +9,7 @@ from typing import ClassVar
 from brdfc.calc.samples import Samples, Storage
 from brdfc.icc.layout import profile_errors, unpack
 from brdfc.icc.numbers import fixed_bytes, unpack_fixed
+from brdfc.icc.tag import Tag
 from brdfc.source.errors import ProfileError
 
 PARAMETERS = {0: 1, 1: 3, 2: 4, 3: 5, 4: 7}
@@ -16,7 +17,7 @@ PARAMETERS = {0: 1, 1: 3, 2: 4, 3: 5, 4: 7}
 
 
 @dataclass(frozen=True)
-class Curve:
+class Curve(Tag):
     """`curv`: over 0..1, the identity, a power (gamma), or samples at equal steps.
 
     gamma: the exponent, u8Fixed8, that is 0 to just under 256 in steps of 1/256. samples: 2 or
@@ -48,7 +49,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class ParametricCurve:
+class ParametricCurve(Tag):
     """`para`: a formula, by the type of its function and the parameters g a b c d e f.
 
     | type | parameters    | Y for X at or above the break      | below | break |

@@ -7,7 +7,6 @@ encoding of its own.
 
 from __future__ import annotations
 
-import math
 import struct
 from dataclasses import dataclass
 from itertools import pairwise
@@ -15,16 +14,18 @@ from typing import Literal
 
 from brdfc.calc.samples import Samples, Storage
 from brdfc.calc.tables import LookupTable, check_grid
+from brdfc.icc.cluts import STORAGES, check_table, clut_bytes, read_clut
 from brdfc.icc.curves import AnyCurve, curves_bytes, read_curves
 from brdfc.icc.layout import profile_errors, unpack
 from brdfc.icc.numbers import fixed_bytes, unpack_fixed
+from brdfc.icc.tag import Tag
 from brdfc.source.errors import ProfileError
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
-class TableLut:
+class TableLut(Tag):
     """`mft1` (8 bits) or `mft2` (16 bits): matrix, input curves, table, output curves.
 
     matrix: 9 s15Fixed16 by rows, for XYZ input only. input_curves and output_curves: samples at
@@ -56,10 +57,10 @@ class TableLut:
 
     def encode(self) -> bytes:
         parts = (self.input_curves, self.table.samples, self.output_curves)
-        storage = _STORAGES[self.bits // 8]
+        storage = STORAGES[self.bits // 8]
         if any(part.storage is not storage for part in parts):
             raise ProfileError("the parts of a lookup table are all of UINT8 or all of UINT16")
-        _check_table(self.table, "the table")
+        check_table(self.table, "the table")
         points = set(self.table.grid)
         if len(points) > 1 or len(self.matrix) != 9:
             raise ProfileError("one number of grid points, and 9 numbers of a matrix, are needed")
@@ -123,7 +124,7 @@ def _sides(kind: Kind, inputs: int, outputs: int) -> tuple[int, int]:
 
 
 @dataclass(frozen=True)
-class StagedLut:
+class StagedLut(Tag):
     """`mAB ` (A curves, table, M curves, matrix, B curves) or `mBA ` (the other way round).
 
     Only the B curves must be there. The A curves are those of the device's channels, all others
@@ -151,7 +152,7 @@ class StagedLut:
             curves_bytes(self.b_curves),
             fixed_bytes(self.matrix or (), "the matrix"),
             curves_bytes(self.m_curves or ()),
-            _clut_bytes(self.clut) if self.clut else b"",
+            clut_bytes(self.clut) if self.clut else b"",
             curves_bytes(self.a_curves or ()),
         ):
             starts.append(_HEAD + len(body) if stage else 0)
@@ -176,7 +177,7 @@ class StagedLut:
         b_curves = read("B curves", b, pcs)
         if b_curves is None:
             raise ProfileError("no B curves, which must be there", where=where)
-        table = _read_clut(data, clut, inputs, outputs, f"{where}, table") if clut else None
+        table = read_clut(data, clut, inputs, outputs, f"{where}, table") if clut else None
         if table is not None:
             extents.append((clut, clut + 20 + len(table.samples.data), "the table"))
         if matrix:
@@ -215,46 +216,12 @@ class StagedLut:
                 where=where,
             )
         if self.clut is not None:
-            _check_table(self.clut, where)
+            check_table(self.clut, where)
             if (self.clut.inputs, self.clut.outputs) != (self.inputs, self.outputs):
                 raise ProfileError("the table has other channels than the tag", where=where)
 
 
 _HEAD = 32
-_STORAGES = {1: Storage.UINT8, 2: Storage.UINT16}
-"""Of a table's numbers, by their precision in bytes."""
-
-
-def _read_clut(data: bytes, offset: int, inputs: int, outputs: int, where: str) -> LookupTable:
-    *points, precision = unpack("17B", data, offset, where)
-    if precision not in _STORAGES:
-        raise ProfileError(f"a table of {precision} bytes a number, not 1 or 2", where=where)
-    grid = tuple(points[:inputs])
-    with profile_errors():
-        check_grid(inputs, outputs, grid, where)
-        count = math.prod(grid) * outputs
-        samples = Samples.read(_STORAGES[precision], count, data, offset + 20, where)
-    return LookupTable(inputs, outputs, grid, samples, extended=True)
-
-
-def _clut_bytes(table: LookupTable) -> bytes:
-    precision = table.samples.storage.dtype.itemsize
-    head = struct.pack(">16sBxxx", bytes(table.grid), precision)
-    return head + table.samples.data + bytes(-len(table.samples.data) % 4)
-
-
-def _check_table(table: LookupTable, where: str) -> None:
-    """That a table is of whole numbers, and as many as its grid says."""
-    with profile_errors():
-        check_grid(table.inputs, table.outputs, table.grid, where)
-    if table.samples.storage not in _STORAGES.values():
-        raise ProfileError("a table is of UINT8 or UINT16", where=where)
-    needed = math.prod(table.grid) * table.outputs
-    if table.samples.count != needed or table.outputs > 255:
-        raise ProfileError(
-            f"{table.samples.count} numbers for {table.outputs} outputs at {needed} points",
-            where=where,
-        )
 
 
 def _check_extents(extents: list[tuple[int, int, str]], where: str) -> None:

@@ -10,6 +10,7 @@ from typing import ClassVar
 
 from brdfc.icc.layout import check_count, unpack
 from brdfc.icc.signatures import signature_bytes, signature_text
+from brdfc.icc.tag import Tag
 from brdfc.source.errors import ProfileError
 
 NUMBER_FORMATS = {
@@ -24,7 +25,7 @@ NUMBER_FORMATS = {
 
 
 @dataclass(frozen=True)
-class NumberArray:
+class NumberArray(Tag):
     """`fl32` and its kin: kind is the type signature, the values as they are in the file.
 
     No value may be NaN or infinite.
@@ -78,7 +79,43 @@ def unpack_fixed(count: int, data: bytes, offset: int, where: str) -> tuple[floa
 
 
 @dataclass(frozen=True)
-class XYZArray:
+class FixedArray(Tag):
+    """`sf32`, of s15Fixed16 (-32768 to just under 32768), or `uf32`, of u16Fixed16 (0 to just
+    under 65536), both in steps of 2^-16."""
+
+    kind: str
+    values: tuple[float, ...]
+
+    @property
+    def type_signature(self) -> str:
+        return self.kind
+
+    def encode(self) -> bytes:
+        form = _FIXED_FORMATS[self.kind]
+        try:
+            fixed = struct.pack(
+                f">{len(self.values)}{form}", *(round(value * 65536) for value in self.values)
+            )
+        except (struct.error, OverflowError, ValueError) as error:
+            raise ProfileError(f"'{self.kind}' cannot hold a value: {error}") from error
+        return signature_bytes(self.kind) + bytes(4) + fixed
+
+    @staticmethod
+    def decode(data: bytes, where: str) -> FixedArray:
+        kind = signature_text(data[:4])
+        count, rest = divmod(len(data) - 8, 4)
+        if rest:
+            raise ProfileError(f"{len(data) - 8} bytes are no whole count of '{kind}'", where=where)
+        check_count(count, where)
+        fixed = unpack(f"{count}{_FIXED_FORMATS[kind]}", data, 8, where)
+        return FixedArray(kind, tuple(number / 65536 for number in fixed))
+
+
+_FIXED_FORMATS = {"sf32": "i", "uf32": "I"}
+
+
+@dataclass(frozen=True)
+class XYZArray(Tag):
     """`XYZ `: colours as s15Fixed16, see fixed_bytes."""
 
     type_signature: ClassVar[str] = "XYZ "
@@ -99,7 +136,7 @@ class XYZArray:
 
 
 @dataclass(frozen=True)
-class Signature:
+class Signature(Tag):
     """`sig `: one signature."""
 
     type_signature: ClassVar[str] = "sig "

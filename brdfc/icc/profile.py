@@ -35,11 +35,26 @@ class Profile:
     tags: Mapping[str, Tag]
     source: bytes | None = field(default=None, init=False, compare=False, repr=False)
 
-    def to_bytes(self, *, profile_id: bool = True) -> bytes:
+    def to_bytes(self, *, profile_id: bool | None = None) -> bytes:
         """The profile as a file has it; the same profile gives the same bytes.
 
-        profile_id: put the MD5 of the contents into the header; otherwise zeros, "not computed".
+        profile_id: True puts the MD5 of the contents into the header, False zeros, "not
+        computed". None leaves a profile that was read and not changed as it was read, byte for
+        byte, and computes the ID of any other. Before version 4 there was none.
         """
+        if self.source is not None and profile_id is None:
+            return self.source
+        data = self._encoded() if self.source is None else self.source
+        if self.header.major_version < 4:
+            return data
+        return (
+            data[:84]
+            + (bytes(16) if profile_id is False else compute_profile_id(data))
+            + data[100:]
+        )
+
+    def _encoded(self) -> bytes:
+        """The bytes of the header, without a profile ID, and of the tags in their order."""
         start = TABLE_START + 12 * len(self.tags)
         places, body = write_parts(
             self.tags.items(), _encode_entry, key=lambda entry: id(entry[1]), start=start
@@ -50,13 +65,9 @@ class Profile:
         table = struct.pack(">I", len(self.tags))
         for signature, place in zip(self.tags, places, strict=True):
             table += signature_bytes(signature) + struct.pack(">II", *place)
-        data = replace(self.header, profile_id=bytes(16)).encode(size) + table + body
-        # Before version 4 the field was reserved.
-        if profile_id and self.header.major_version >= 4:
-            data = data[:84] + compute_profile_id(data) + data[100:]
-        return data
+        return replace(self.header, profile_id=bytes(16)).encode(size) + table + body
 
-    def save(self, path: str | Path, *, profile_id: bool = True) -> None:
+    def save(self, path: str | Path, *, profile_id: bool | None = None) -> None:
         """Write the profile to a file, whole or not at all."""
         write_whole(path, self.to_bytes(profile_id=profile_id))
 
@@ -97,7 +108,7 @@ class Profile:
 def _encode_entry(entry: tuple[str, Tag]) -> bytes:
     signature, tag = entry
     try:
-        return tag.encode()
+        return tag.to_bytes()
     except (ProfileError, ProgramError) as error:
         raise ProfileError(error.message, where=f"tag '{signature}'", hint=error.hint) from error
 

@@ -9,11 +9,12 @@ from xml.sax.saxutils import escape
 
 from brdfc.icc.layout import read_parts, unpack, unpack_records, write_parts
 from brdfc.icc.signatures import signature_bytes, signature_text
+from brdfc.icc.tag import Tag
 from brdfc.source.errors import ProfileError
 
 
 @dataclass(frozen=True)
-class LocalizedText:
+class LocalizedText(Tag):
     """`mluc`: one text in several languages, as pairs such as ("enUS", "Ward, matte paper")."""
 
     type_signature: ClassVar[str] = "mluc"
@@ -53,7 +54,7 @@ class LocalizedText:
 
 
 @dataclass(frozen=True)
-class Utf8Text:
+class Utf8Text(Tag):
     """`utf8`: one text, ended by a NUL that counts as part of the tag."""
 
     type_signature: ClassVar[str] = "utf8"
@@ -79,7 +80,7 @@ class Utf8Text:
 
 
 @dataclass(frozen=True)
-class Utf8Array:
+class Utf8Array(Tag):
     """`tary` of utf8: names, such as those of the multiplex channels (`mcta`).
 
     The array signature is `utf8`: with any other the reference validates but does not connect.
@@ -120,7 +121,7 @@ DICTIONARY_TEXT_LIMIT = 200
 
 
 @dataclass(frozen=True)
-class Dictionary:
+class Dictionary(Tag):
     """`dict`: names and values, in the order of the file.
 
     Display names, which other writers may add, are passed over on reading, and a value that is

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 from brdfc.icc.header import SpectralRange
 from brdfc.icc.layout import unpack
+from brdfc.icc.tag import Tag
 from brdfc.source.errors import ProfileError
 
 XYZ = tuple[float, float, float]
@@ -26,7 +27,7 @@ ILLUMINANTS = {
 
 
 @dataclass(frozen=True)
-class SpectralViewingConditions:
+class SpectralViewingConditions(Tag):
     """Codes of OBSERVERS and ILLUMINANTS, and the spectra themselves.
 
     matching: the colour matching functions, all of x, then y, then z, over observer_range; power:

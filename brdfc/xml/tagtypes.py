@@ -17,6 +17,7 @@ from brdfc.icc.types import (
     Signature,
     Structure,
     Tag,
+    TagArray,
     XYZArray,
     decode_tag,
 )
@@ -60,10 +61,11 @@ class TagType(NamedTuple):
 def tag_node(tag: Tag, elements: ElementWriter, names: Names = NO_NAMES) -> Node:
     """The node of a tag's type. names: of the channels of a transform's first element."""
     row = _ROWS.get(tag.type_signature)
-    children = row.write(tag, elements, names) if row and not isinstance(tag, Opaque) else None
+    typed = row is not None and not isinstance(tag, (Opaque, TagArray))
+    children = row.write(tag, elements, names) if row and typed else None
     if children is not None:
         return Node(TYPE_NAMES[tag.type_signature], {}, children)
-    data = tag.encode()
+    data = tag.to_bytes()
     attributes = {"type": signature_name(data[:4])}
     unknown = Node("UnknownData", lines=hexadecimal_lines(data[4:]))
     return Node("PrivateType", attributes, [unknown])

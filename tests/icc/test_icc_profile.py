@@ -17,6 +17,8 @@ from brdfc.icc.types import (
     LocalizedText,
     Opaque,
     Pipeline,
+    PlainText,
+    TextDescription,
     Utf8Array,
     XYZArray,
 )
@@ -164,10 +166,10 @@ def test_a_header_that_no_file_can_hold(change):
 
 
 def test_an_unknown_type_is_carried_as_it_is():
-    tag = Opaque(b"ehim\0\0\0\1whatever it is")
-    read = Profile.from_bytes(mid(smap=tag).to_bytes())
-    assert read.tags["smap"] == tag
-    assert read.tags["smap"].type_signature == "ehim"
+    tag = Opaque(b"vcgt\0\0\0\1whatever it is")
+    read = Profile.from_bytes(mid(vcgt=tag).to_bytes())
+    assert read.tags["vcgt"] == tag
+    assert read.tags["vcgt"].type_signature == "vcgt"
 
 
 def test_what_cannot_be_written_is_named():
@@ -184,10 +186,84 @@ def test_a_version_2_profile_is_read():
     white = XYZArray((D50,))
     colorants = dict.fromkeys(("wtpt", "rXYZ", "gXYZ", "bXYZ"), white)
     curves = dict.fromkeys(("rTRC", "gTRC", "bTRC"), curve)
-    texts = {"desc": Opaque(b"desc" + bytes(86)), "cprt": Opaque(b"text\0\0\0\0free\0")}
+    texts = {"desc": TextDescription("a display"), "cprt": PlainText("free")}
     header = Header("mntr", b"RGB ", b"XYZ ", version=0x02100000)
     data = Profile(header, texts | colorants | curves).to_bytes()
     read = Profile.from_bytes(data)
     assert read.tags["bTRC"] == curve
     assert validate(read) == []
     assert read.to_bytes() == data
+
+
+# ---------------------------------------------------------------- unchanged
+
+
+def loose(data: bytes) -> bytes:
+    """The MINIMAL_MID with a layout of its own: tags in another order, gaps between them, a gap
+    inside a text and a reserved word that is not zero."""
+    text = bytearray(LocalizedText.english("x").encode())
+    text[4:8] = b"\1\2\3\4"
+    text[20:] = struct.pack(">II", 2, 32) + b"gap!" + b"\0x"
+    old = {tag: data[tag_start(data, tag) :] for tag in ("desc", "cprt", "A2M0", "mcta")}
+    sizes = {"desc": 34, "cprt": 30, "A2M0": 92, "mcta": 36}
+    parts = {"mcta": old["mcta"], "desc": bytes(text), "A2M0": old["A2M0"], "cprt": old["cprt"]}
+    table, body = b"", b""
+    starts = {}
+    for tag, part in parts.items():
+        starts[tag] = 128 + 4 + 48 + len(body)
+        body += part[: sizes[tag]].ljust(sizes[tag] + 10, b"\xaa")
+        body += b"\xaa" * (-len(body) % 4)
+    for tag in old:
+        table += tag.encode() + struct.pack(">II", starts[tag], sizes[tag])
+    size = struct.pack(">I", 132 + len(table) + len(body))
+    return size + data[4:132] + table + body
+
+
+@pytest.mark.parametrize("data", [MINIMAL_MID, loose(MINIMAL_MID)], ids=["regular", "loose"])
+def test_what_is_not_changed_stays_as_it_is(data):
+    """Byte for byte, with its identity: none here."""
+    profile = Profile.from_bytes(data)
+    assert profile.to_bytes() == data
+    assert any(profile.to_bytes(profile_id=True)[84:100])
+    assert profile.to_bytes(profile_id=True)[100:] == data[100:]
+
+
+def test_a_wrong_identity_stays_unless_it_is_asked_for():
+    data = MINIMAL_MID[:84] + b"x" * 16 + MINIMAL_MID[100:]
+    profile = Profile.from_bytes(data)
+    assert profile.to_bytes() == data
+    assert profile.to_bytes(profile_id=False) == MINIMAL_MID
+    assert Profile.from_bytes(profile.to_bytes(profile_id=True)).tags == profile.tags
+
+
+def test_a_tag_that_is_not_changed_stays_as_it_is():
+    """When another one is: its reserved bytes and its gap too, though nobody reads them."""
+    profile = Profile.from_bytes(loose(MINIMAL_MID))
+    tags = {**profile.tags, "cprt": LocalizedText.english("free")}
+    again = Profile.from_bytes(replace(profile, tags=tags).to_bytes())
+    assert again.tags == tags
+    assert again.tags["desc"].to_bytes() == profile.tags["desc"].to_bytes()
+    assert b"gap!" in again.tags["desc"].to_bytes()
+    anew = replace(profile.tags["desc"], records=(("enUS", "x"),))
+    assert b"gap!" not in anew.to_bytes()
+    assert again.header.profile_id != bytes(16)
+
+
+def test_version_2_has_no_identity():
+    header = Header("mntr", b"RGB ", b"XYZ ", version=0x02400000)
+    data = Profile(header, {"cprt": PlainText("free")}).to_bytes(profile_id=True)
+    assert data[84:100] == bytes(16)
+    read = Profile.from_bytes(data)
+    assert read.to_bytes(profile_id=True) == data
+
+
+@pytest.mark.parametrize("name", ["sRGB", "LAB", "XYZ"])
+def test_profiles_of_another_writer(name):
+    """Those that LittleCMS makes, of versions 2 and 4: each tag, and the whole."""
+    cms = pytest.importorskip("PIL.ImageCms")
+    data = cms.ImageCmsProfile(cms.createProfile(name)).tobytes()
+    profile = Profile.from_bytes(data)
+    assert profile.to_bytes() == data
+    assert not any(isinstance(tag, Opaque) for tag in profile.tags.values())
+    for tag in profile.tags.values():
+        assert type(tag).decode(tag.encode(), "again") == tag
