@@ -61,7 +61,16 @@ def evaluate(
     values: an array (..., components) for every quantity, broadcast against each other; angles in
     radians. Returns (..., width).
     """
-    result = evaluate_parts(expression, values)[expression]
+    parts = list(walk(expression))
+    last_use = {argument: e for e in parts for argument in e.arguments}
+    done: dict[Expression, NDArray[np.float64]] = {}
+    with np.errstate(all="ignore"):
+        for e in parts:
+            done[e] = _step(e, done, values)
+            for argument in set(e.arguments):  # its memory is still in the cache for what follows
+                if last_use[argument] is e:
+                    del done[argument]
+    result = done[expression]
     shape = np.broadcast_shapes(result.shape, *((*np.shape(v)[:-1], 1) for v in values.values()))
     return np.broadcast_to(result, (*shape[:-1], expression.width)).astype(np.float64)
 
