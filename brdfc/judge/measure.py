@@ -19,9 +19,10 @@ from brdfc.judge.graphs import Graphs
 from brdfc.judge.problem import Problem
 from brdfc.judge.strata import Points
 from brdfc.lang.model import Quantity
-from brdfc.symbolic.evaluate import evaluate, evaluate_precisely
+from brdfc.symbolic.evaluate import evaluate
 from brdfc.symbolic.expression import Expression
 from brdfc.symbolic.intervals import LARGEST
+from brdfc.symbolic.precise import PreciseEvaluation
 
 SEEN = 1e-4
 """Errors in bits count where a value is at least this share of the peak at the same coefficients;
@@ -46,12 +47,16 @@ class Measured:
 
 
 class Judge:
-    """Measures forms of one formula. truth: its exact values in high precision."""
+    """Measures forms of one formula. truth: its exact values in high precision; quick: whether
+    float64 is good enough for them, found out where it is not said (see float64_suffices)."""
 
-    def __init__(self, problem: Problem, points: Points) -> None:
+    def __init__(self, problem: Problem, points: Points, quick: bool | None = None) -> None:
         exact = problem.exact
         self.exact, self.points, self.colorimetry = exact, points, problem.colorimetry
-        self.truth, self.quick = _truth(exact, points)
+        self.quick = float64_suffices(exact, points) if quick is None else quick
+        every = range(points.count)
+        at = points.values
+        self.truth = _quickly(exact, at) if self.quick else _precise(exact, points, every)
         peaks = [evaluate(exact, at) for at in _at_peak(points, problem.quantities)]
         peak = np.nanmax(np.abs(np.concatenate(peaks, axis=-1)), axis=-1, initial=0.0)
         self.seen = SEEN * np.minimum(peak, LARGEST)[:, None]
@@ -136,22 +141,14 @@ def float64_suffices(exact: Expression, points: Points) -> bool:
     return bool(np.all(near | ~np.isfinite(truth) | (np.abs(truth) < FALSE_ZERO)))
 
 
-def _truth(exact: Expression, points: Points) -> tuple[NDArray[np.float64], bool]:
-    """The values of a formula, and whether float64 was good enough for them."""
-    if float64_suffices(exact, points):
-        return _quickly(exact, points.values), True
-    return _precise(exact, points, range(points.count)), False
-
-
 def _quickly(exact: Expression, values: Mapping[str, NDArray[np.float32]]) -> NDArray[np.float64]:
     return evaluate(exact, {name: v.astype(np.float64) for name, v in values.items()})
 
 
 def _precise(exact: Expression, points: Points, which: range) -> NDArray[np.float64]:
     columns = {name: values.tolist() for name, values in points.values.items()}
-    rows = [
-        evaluate_precisely(exact, {name: rows[i] for name, rows in columns.items()}) for i in which
-    ]
+    precise = PreciseEvaluation(exact)
+    rows = [precise({name: rows[i] for name, rows in columns.items()}) for i in which]
     return np.array(rows, dtype=np.float64).reshape(len(which), exact.width)
 
 

@@ -23,9 +23,9 @@ from brdfc.colour.colorimetry import XYZ_UNDER_D50, Colorimetry
 from brdfc.engine.interpreter import run
 from brdfc.judge.samples import Samples
 from brdfc.source.errors import SelfCheckError
-from brdfc.symbolic.evaluate import evaluate_precisely
 from brdfc.symbolic.expression import Expression
 from brdfc.symbolic.intervals import LARGEST
+from brdfc.symbolic.precise import PreciseEvaluation
 
 LIMIT = 0.002
 """CIEDE2000 that a program may differ from its model: far below what anyone can see,
@@ -57,11 +57,12 @@ def self_check(
     the program reads. colorimetry: what its results look like."""
     _check_encodings(program)
     facts = verify(program)
+    precise = PreciseEvaluation(exact)
     points, undefined, worst, worst_at = 0, 0, 0.0, ""
     for variables, columns in zip(samples.runs, samples.pixels, strict=True):
         environment = _environment(variables, bindings)
         result = run(program, _pixels(program, columns, bindings), environment)
-        truth = _truth(exact, variables, columns, len(result))
+        truth = _truth(precise, variables, columns, len(result))
         broken = np.flatnonzero(~np.isfinite(result).all(axis=-1))
         if len(broken):
             first = int(broken[0])
@@ -72,7 +73,7 @@ def self_check(
         known = _known(truth)
         difference = _differences(result, truth, colorimetry)
         for i in np.flatnonzero(difference > limit):
-            near = _nearby_truths(exact, variables, columns, int(i))
+            near = _nearby_truths(precise, variables, columns, int(i))
             difference[i] = np.min([difference[i], *_differences(result[i], near, colorimetry)])
         index = int(np.argmax(difference))
         if difference[index] > worst or not worst_at:
@@ -144,7 +145,7 @@ def _environment(
 
 
 def _truth(
-    exact: Expression,
+    precise: PreciseEvaluation,
     variables: Mapping[str, float],
     columns: Mapping[str, NDArray[np.float32]],
     count: int,
@@ -153,8 +154,8 @@ def _truth(
     rows = []
     for i in range(count):
         point = {name: tuple(values[i].tolist()) for name, values in columns.items()}
-        rows.append(evaluate_precisely(exact, {**fixed, **point}))
-    return np.array(rows, dtype=np.float64).reshape(count, exact.width)
+        rows.append(precise({**fixed, **point}))
+    return np.array(rows, dtype=np.float64)
 
 
 def _known(truth: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -171,7 +172,7 @@ def _differences(
 
 
 def _nearby_truths(
-    exact: Expression,
+    precise: PreciseEvaluation,
     variables: Mapping[str, float],
     columns: Mapping[str, NDArray[np.float32]],
     index: int,
@@ -188,7 +189,7 @@ def _nearby_truths(
         for side in (-np.inf, np.inf):
             moved = {**point, name: np.nextafter(values, np.float32(side))}
             given = {n: tuple(v.tolist()) for n, v in moved.items()}
-            truths.append(evaluate_precisely(exact, given))
+            truths.append(precise(given))
     nearby: NDArray[np.float64] = np.array(truths, dtype=np.float64)
     return nearby[_known(nearby)]
 

@@ -20,7 +20,8 @@ from brdfc.judge.measure import FALSE_ZERO, Judge, float64_suffices
 from brdfc.judge.problem import Problem
 from brdfc.judge.rival import Subject, pixels
 from brdfc.judge.strata import Points
-from brdfc.symbolic.evaluate import evaluate, evaluate_precisely
+from brdfc.symbolic.evaluate import evaluate
+from brdfc.symbolic.precise import PreciseEvaluation
 
 JUDGED, COUNTED = 20_000, 1_000_000
 """Points whose error is measured, and points where failures are counted, by default."""
@@ -41,9 +42,10 @@ def judge_strata(
     rows = []
     for stratum in strata:
         at = _stratum_points(problem, stratum, share)
-        if at.count > SLOW_JUDGED and not float64_suffices(problem.exact, at):
+        quick = float64_suffices(problem.exact, at)
+        if at.count > SLOW_JUDGED and not quick:
             at = _stratum_points(problem, stratum, SLOW_JUDGED)
-        judge = Judge(problem, at)
+        judge = Judge(problem, at, quick)
         given = pixels(at, problem)
         starts, ends, floor = _lines(judge, given, lines)
         exact = _Exact(problem)
@@ -187,9 +189,6 @@ class _Exact:
 
     def precisely(self, rows: NDArray[np.float32]) -> NDArray[np.float64]:
         columns = {name: values.tolist() for name, values in self.columns(rows).items()}
-        return np.array(
-            [
-                evaluate_precisely(self.problem.exact, {n: c[i] for n, c in columns.items()})
-                for i in range(len(rows))
-            ]
-        ).reshape(len(rows), self.problem.exact.width)
+        precise = PreciseEvaluation(self.problem.exact)
+        values = [precise({n: c[i] for n, c in columns.items()}) for i in range(len(rows))]
+        return np.array(values).reshape(len(rows), self.problem.exact.width)

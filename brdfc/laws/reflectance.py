@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from brdfc.lang.model import Model, Quantity
 from brdfc.symbolic.build import build
 from brdfc.symbolic.constants import fold_constants
-from brdfc.symbolic.evaluate import evaluate, evaluate_precisely
+from brdfc.symbolic.evaluate import evaluate
 from brdfc.symbolic.expression import walk
+from brdfc.symbolic.precise import PreciseEvaluation
 
 Array = NDArray[np.float64]
 Values = Mapping[str, Array]
@@ -55,6 +56,7 @@ class Reflectance:
     def __init__(self, model: Model) -> None:
         self._exact = build(model.radiance, {}, free=True)
         self._quick = fold_constants(self._exact)
+        self._precise = PreciseEvaluation(self._exact)
         self._used = {e.name for e in walk(self._exact) if e.operator == "quantity"}
         known = {q.name: q for q in model.quantities}
         self.parameters: tuple[Quantity, ...] = tuple(
@@ -99,8 +101,7 @@ class Reflectance:
 
     def precise_radiance(self, point: Mapping[str, Sequence[float]]) -> tuple[float, ...]:
         """The radiance at one point in high precision; NaN where it is undefined."""
-        given = {INTENSITY: self._intensity, **point}
-        return evaluate_precisely(self._exact, {name: given[name] for name in self._used})
+        return self._precise({INTENSITY: self._intensity, **point})
 
     def precise(self, point: Mapping[str, Sequence[float]]) -> tuple[float, ...]:
         """f at one point in high precision; NaN where it is undefined."""

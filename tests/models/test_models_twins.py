@@ -15,8 +15,8 @@ from brdfc.judge.rival import as_written
 from brdfc.lang.load import library, load, textbook_form
 from brdfc.lang.model import Model
 from brdfc.prepared import prepare, problem_of
-from brdfc.symbolic.evaluate import evaluate_precisely
 from brdfc.symbolic.formula import formula
+from brdfc.symbolic.precise import PreciseEvaluation
 
 MODELS = [name for name, entry in library().items() if entry.kind == "model"]
 GEOMETRIES = ["plane", "full"]
@@ -48,17 +48,18 @@ def test_a_textbook_form_has_the_quantities_of_its_model(name: str, geometry: st
 def test_a_textbook_form_has_the_values_of_its_model(name: str, geometry: str) -> None:
     """To 9 digits, wherever it has one: at the normal, say, some divide 0 by 0."""
     model, twin = twins(name, geometry)
-    roles, ready = prepare(model, {}, ())
-    written = formula(twin, roles.constants).exact
+    roles, ready = prepare(model, {}, (), cache=True)
+    precise = PreciseEvaluation(ready.exact)
+    written = PreciseEvaluation(formula(twin, roles.constants).exact)
     drawn = strata.points(ready.domain, roles.channels + roles.variables, SHARE)
     undefined = 0
     for i in range(drawn.count):
         point = {n: v[i].astype(np.float64).tolist() for n, v in drawn.values.items()}
-        theirs = evaluate_precisely(written, point)
+        theirs = written(point)
         if any(math.isnan(value) for value in theirs):
             undefined += 1
             continue
-        ours = evaluate_precisely(ready.exact, point)
+        ours = precise(point)
         assert theirs == pytest.approx(ours, rel=1e-9, abs=VANISHING), point
     assert undefined <= drawn.count / 3
 
@@ -67,7 +68,7 @@ def test_a_textbook_form_has_the_values_of_its_model(name: str, geometry: str) -
 def test_a_textbook_form_can_stand_beside_its_model(geometry: str) -> None:
     """As a program, operator by operator, for a report."""
     model, twin = twins("ggx", geometry)
-    roles, ready = prepare(model, {}, ())
+    roles, ready = prepare(model, {}, (), cache=True)
     program = as_written(twin, problem_of(roles, ready), roles.constants)
     assert program.outputs == 3
 

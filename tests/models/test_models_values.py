@@ -14,7 +14,9 @@ from brdfc.judge import strata
 from brdfc.lang.load import library, load
 from brdfc.lang.model import Model
 from brdfc.prepared import prepare
-from brdfc.symbolic.evaluate import evaluate, evaluate_precisely
+from brdfc.symbolic.evaluate import evaluate
+from brdfc.symbolic.formula import Formula
+from brdfc.symbolic.precise import PreciseEvaluation
 
 Array = NDArray[np.float64]
 Values = dict[str, Array]
@@ -28,11 +30,11 @@ VANISHING = 1e-100
 60 digits."""
 
 
-def drawn(model: Model, share: int, seed: int = 1) -> Values:
-    """Points of a model's domain where models live: lobe, grazing, tail, edges."""
-    roles, ready = prepare(model, {}, ())
+def drawn(model: Model, share: int, seed: int = 1) -> tuple[Formula, Values]:
+    """A model's formula, and points of its domain where models live: lobe, grazing, tail, edges."""
+    roles, ready = prepare(model, {}, (), cache=True)
     found = strata.points(ready.domain, roles.channels + roles.variables, share, seed)
-    return {name: v.astype(np.float64) for name, v in found.values.items()}
+    return ready, {name: v.astype(np.float64) for name, v in found.values.items()}
 
 
 def textbook(name: str, geometry: str, point: Mapping[str, Any]) -> list[Any]:
@@ -48,9 +50,8 @@ def textbook(name: str, geometry: str, point: Mapping[str, Any]) -> list[Any]:
 @pytest.mark.parametrize("geometry", GEOMETRIES)
 @pytest.mark.parametrize("name", MODELS)
 def test_a_model_is_its_textbook_formula(name: str, geometry: str) -> None:
-    model = load(name, geometry)
-    values = drawn(model, SHARE)
-    _, ready = prepare(model, {}, ())
+    ready, values = drawn(load(name, geometry), SHARE)
+    exact = PreciseEvaluation(ready.exact)
     compared = 0
     for i in range(len(next(iter(values.values())))):
         row = {n: v[i].tolist() for n, v in values.items()}
@@ -59,7 +60,7 @@ def test_a_model_is_its_textbook_formula(name: str, geometry: str) -> None:
             expected = textbook(name, geometry, point)
         except ZeroDivisionError:
             continue  # where the textbook's form is 0/0 or x/0
-        found = evaluate_precisely(ready.exact, row)
+        found = exact(row)
         for ours, theirs in zip(found, expected, strict=True):
             assert ours == pytest.approx(float(theirs), rel=1e-9, abs=VANISHING), point
         compared += 1
@@ -69,7 +70,7 @@ def test_a_model_is_its_textbook_formula(name: str, geometry: str) -> None:
 @pytest.mark.parametrize("name", MODELS)
 def test_the_plane_of_incidence_is_a_plane_of_the_full_geometry(name: str) -> None:
     plane, full = load(name), load(name, "full")
-    values = drawn(plane, 50)
+    ready, values = drawn(plane, 50)
     turn = values.pop("orientation", np.zeros_like(values["incident"]))
     beyond = np.pi * (values.get("reflection", turn) >= 0)
     around = {
@@ -78,9 +79,9 @@ def test_the_plane_of_incidence_is_a_plane_of_the_full_geometry(name: str) -> No
         **{n: np.abs(values[n]) for n in ("incident", "reflection") if n in values},
     }
     wanted = {q.name for q in full.quantities}
-    flat = evaluate(prepare(plane, {}, ())[1].exact, {**values, "orientation": turn})
+    flat = evaluate(ready.exact, {**values, "orientation": turn})
     deep = evaluate(
-        prepare(full, {}, ())[1].exact,
+        prepare(full, {}, (), cache=True)[1].exact,
         {k: v for k, v in {**values, **around}.items() if k in wanted},
     )
     seen = flat > 1e-30
@@ -91,8 +92,7 @@ def test_the_plane_of_incidence_is_a_plane_of_the_full_geometry(name: str) -> No
 @pytest.mark.parametrize("name", MODELS)
 def test_a_model_has_a_value_everywhere(name: str, geometry: str) -> None:
     """Finite in float64 at every point of the strata, and never below 0 but for rounding."""
-    model = load(name, geometry)
-    _, ready = prepare(model, {}, ())
-    values = evaluate(ready.prepared, drawn(model, 400, seed=3))
+    ready, points = drawn(load(name, geometry), 400, seed=3)
+    values = evaluate(ready.prepared, points)
     assert np.isfinite(values).all()
     assert (values >= -1e-12).all()
