@@ -16,6 +16,7 @@ PACKAGE = Path(__file__).parents[1] / "brdfc"
 
 WRITERS = {
     "files.py": "the one place",
+    "checker.py": "a profile to ask about, in a folder of its own",
     "cli/main.py": "to the null device, what can be printed nowhere",
     "cmm/reference.py": "a request, in a folder of its own",
     "fit/exports.py": "a patch, to a whole_file",
@@ -59,7 +60,7 @@ from pathlib import Path
 import numpy as np, tifffile
 from brdfc.calc.program import Program
 from brdfc.calc.text import assemble
-from brdfc.cmm.link import connect_alone
+from brdfc.cmm.connect import connect_alone
 from brdfc.cmm.rendering import rendering
 from brdfc.files import write_all, write_whole
 from brdfc.icc.header import Header
