@@ -16,8 +16,10 @@ from brdfc.calc.program import Element, Matrix, Op, Program
 from brdfc.calc.samples import Samples
 from brdfc.calc.tables import LookupTable
 from brdfc.calc.text import assemble
+from brdfc.checker import check_profile
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import NumberArray, Pipeline, Utf8Array
+from brdfc.inspection import inspect
 from brdfc.profiles.content import Content
 from brdfc.profiles.multiplex import profile_pair
 from brdfc.source.errors import BrdfcError, LinkError, ProgramError, ValueGivenError
@@ -247,7 +249,7 @@ def test_tables_in_tetrahedra() -> None:
         brdfc.connect(*with_elements(TABLE), interpolation="cubic")
 
 
-def test_variables_of_curves() -> None:
+def test_variables_of_curves(tmp_path: Path) -> None:
     """A curve that is sampled from a program makes the program's variables those of the link."""
     link = brdfc.connect(
         *with_elements(CurveSet((CalculatorCurve(9, 0.0, 1.0, GAIN),) * 3)), env={"gain": 0.5}
@@ -255,5 +257,17 @@ def test_variables_of_curves() -> None:
     np.testing.assert_allclose(link.apply([1.0, 0.5, 0.25]), [0.5, 0.25, 0.125])
     np.testing.assert_allclose(link.sweep([1.0, 0.5, 0.25], gain=[1, 2])[1], [2, 1, 0.5])
     hostile = CalculatorCurve(0xFFFFFFFF, 0.0, 1.0, Program(1, 1, assemble("{ in out }")))
+    refused = with_elements(CurveSet((hostile,) * 3))
     with pytest.raises(ProgramError, match="sampled 4,294,967,295 times"):
-        brdfc.connect(*with_elements(CurveSet((hostile,) * 3)))
+        brdfc.connect(*refused)
+    # And it is shown, or why it is refused.
+    path = tmp_path / "curves_mvis.icc"
+    for profile, variables, told in (
+        (link.profile, ["gain"], "curves proven safe to sample"),
+        (refused[1], [], "the curve is sampled 4,294,967,295 times"),
+    ):
+        path.write_bytes(profile.to_bytes())
+        shown = inspect(path, engine=False)
+        assert [variable.signature for variable in shown.variables] == variables
+        assert any(told in finding.message for finding in check_profile(path))
+    assert told in " ".join(shown.verdicts["programs"])
