@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from brdfc.calc.binary import decode_element, encode_element
 from brdfc.calc.operators import OPERATORS, Operand
 from brdfc.calc.price import operations
-from brdfc.calc.program import Matrix, Op, OpaqueElement, Program, encoded_length
+from brdfc.calc.program import If, Matrix, Op, OpaqueElement, Program, Select, encoded_length
 from brdfc.calc.text import assemble
 from brdfc.calc.verify import Facts, verify
 from brdfc.source.errors import ProgramError
@@ -132,6 +132,44 @@ def test_a_long_program_decodes_and_verifies_quickly():
     facts = verify(decode_element(data, "x"))
     assert time.perf_counter() - started < 2.0  # 0.4 s on one core
     assert facts.stack == 1
+
+
+def test_sub_elements_that_nothing_calls():
+    """The reference engine refuses a profile for them, and so does brdfc."""
+    with pytest.raises(ProgramError) as caught:
+        verify(program("{ in out }", MATRIX, INNER, Program(1, 1, assemble("{ in add out }"))))
+    assert "calculator, sub-element 2, op 1: 'add' needs 2 values" in str(caught.value)
+
+
+def test_work_of_branches_over_a_deep_stack():
+    """Each keeps the whole state aside for the pixels that go another way."""
+    deep = (Op("in", 0, 1), Op("copy", 1, 50_000), Op("tsav", 0, 50_000))
+    branch = (Op("in", 0, 1), If(()))
+    verify(Program(1, 1, (*deep, *branch * 30, Op("out", 0, 1))))
+    with pytest.raises(ProgramError) as caught:
+        verify(Program(1, 1, (*deep, *branch * 300, Op("out", 0, 1))))
+    assert "a pixel may take more than 10,000,000 steps" in str(caught.value)
+    verify(Program(1, 1, (*branch * 40_000, Op("in", 0, 1), Op("out", 0, 1))))
+
+
+IN, LAST = Op("in", 0, 1), Op("out", 0, 1)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        (IN, *[Op("tsav", 65535, 1)] * 100_000),
+        (IN, Op("tsav", 65535, 1), *(Op("tget", 65535, 1), Op("pop", 1)) * 50_000),
+        tuple(op for i in range(50_000) for op in (IN, Op("tput", i, 1))),
+        (IN, Op("tput", 65535, 1), *(IN, If(())) * 30_000),
+        (IN, Select(tuple((IN, Op("tput", 65534, 1)) for _ in range(30_000)))),
+    ],
+    ids=["writes", "reads", "all temporaries", "branches", "cases"],
+)
+def test_the_greatest_temporaries_take_no_longer(body):
+    started = time.process_time()
+    verify(Program(1, 1, (*body, IN, LAST)))
+    assert time.process_time() - started < 3  # under 0.4 s where nothing else runs
 
 
 def test_effects_of_the_table():
