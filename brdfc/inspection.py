@@ -17,11 +17,11 @@ from brdfc.cmm import reference
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import (
     DEVICE_CLASSES,
-    TAGS,
     signature_bytes,
     space_channels,
     space_text,
 )
+from brdfc.icc.tags import TAGS
 from brdfc.icc.texts import Dictionary, LocalizedText, Utf8Array
 from brdfc.icc.types import NumberArray, Pipeline
 from brdfc.icc.validate import validate

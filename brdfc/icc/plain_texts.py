@@ -1,4 +1,5 @@
-"""Texts of other kinds: `text` and `desc` (version 2's textDescriptionType), `zutf` and `zxml`."""
+"""Texts of other kinds: `text` and `desc` (version 2's textDescriptionType), `zut8`, `zxml`
+and `ZXML`."""
 
 from __future__ import annotations
 
@@ -105,7 +106,8 @@ def _fitting(script: bytes) -> bytes:
 
 @dataclass(frozen=True)
 class CompressedText(Tag):
-    """`zutf` or `zxml`: UTF-8 as compressed by zlib. It is inflated when asked for, not before."""
+    """`zut8`, `zxml` or `ZXML`: UTF-8 as compressed by zlib, inflated only when asked
+    for."""
 
     kind: str
     data: bytes

@@ -1,4 +1,4 @@
-"""The names of the format as data: device classes, tags, colour spaces.
+"""The names of the format as data: device classes and colour spaces; the tags stand in tags.py.
 
 A signature is four characters of text here ("A2M0", "mdv "), and "" where the file has four zero
 bytes. Only colour spaces are bytes, because some end in a binary count: `nc0005` in print is
@@ -12,64 +12,6 @@ from typing import NamedTuple
 
 from brdfc.source.errors import ProfileError
 
-# --- tags -------------------------------------------------------------------------------------
-
-
-class TagKind(NamedTuple):
-    """A tag: its name, the types it may have, and what its transform connects.
-
-    channels names the header's spaces that give the channel counts in and out: device (data
-    colour space), pcs, spectral (spectral PCS), mcs, brdf (the four angles of the BRDF tags
-    followed by device), any number written as itself, or None for tags that are no transform.
-    D2B led to the PCS before there were spectral PCSs: "spectral or pcs".
-    """
-
-    name: str
-    types: tuple[str, ...]
-    channels: tuple[str, str] | None = None
-
-
-_TEXT = ("mluc",)
-_NUMBERS = ("fl16", "fl32", "fl64", "ui08", "ui16")
-_LUTS = ("mft1", "mft2", "mAB ", "mBA ", "mpet", "tstr")
-_MPET = ("mpet",)
-
-TAGS: dict[str, TagKind] = {
-    "desc": TagKind("profileDescription", _TEXT),
-    "cprt": TagKind("copyright", _TEXT),
-    "wtpt": TagKind("mediaWhitePoint", ("XYZ ",)),
-    "meta": TagKind("metadata", ("dict",)),
-    "A2M0": TagKind("AToM0", _MPET, ("device", "mcs")),
-    "M2A0": TagKind("MToA0", _MPET, ("mcs", "device")),
-    "mcta": TagKind("multiplexTypeArray", ("tary",)),
-    "mdv ": TagKind("multiplexDefaultValues", ("ui08", "ui16", "fl16", "fl32")),
-    "c2sp": TagKind("customToStandardPcc", _MPET, ("3", "3")),
-    "s2cp": TagKind("standardToCustomPcc", _MPET, ("3", "3")),
-    "svcn": TagKind("spectralViewingConditions", ("svcn",)),
-    "swpt": TagKind("spectralWhitePoint", _NUMBERS),
-    "smap": TagKind("surfaceMap", ("ehim", "enim")),
-    "clin": TagKind("colorantInfo", ("tary",)),
-    "clio": TagKind("colorantInfoOut", ("tary",)),
-    "nmcl": TagKind("namedColor", ("tary",)),
-}
-for _n in "0123":
-    TAGS |= {
-        f"M2B{_n}": TagKind(f"MToB{_n}", _MPET, ("mcs", "pcs")),
-        f"M2S{_n}": TagKind(f"MToS{_n}", _MPET, ("mcs", "spectral")),
-        f"A2B{_n}": TagKind(f"AToB{_n}", _LUTS, ("device", "pcs")),
-        f"B2A{_n}": TagKind(f"BToA{_n}", _LUTS, ("pcs", "device")),
-        f"D2B{_n}": TagKind(f"DToB{_n}", _MPET, ("device", "spectral or pcs")),
-        f"B2D{_n}": TagKind(f"BToD{_n}", _MPET, ("spectral or pcs", "device")),
-        f"bAB{_n}": TagKind(f"brdfAToB{_n}", _MPET, ("brdf", "pcs")),
-        f"bDB{_n}": TagKind(f"brdfDToB{_n}", _MPET, ("brdf", "spectral")),
-        f"bcp{_n}": TagKind(f"brdfColorimetricParameter{_n}", ("tstr",)),
-        f"bsp{_n}": TagKind(f"brdfSpectralParameter{_n}", ("tstr",)),
-        f"bMB{_n}": TagKind(f"brdfMToB{_n}", ("tstr",)),
-        f"bMS{_n}": TagKind(f"brdfMToS{_n}", ("tstr",)),
-        f"gbd{_n}": TagKind(f"gamutBoundaryDescription{_n}", ("gbd ",)),
-        f"H2S{_n}": TagKind(f"HToS{_n}", _MPET),
-    }
-
 # --- device classes -----------------------------------------------------------------------------
 
 Requirement = tuple[tuple[str, ...], ...]
@@ -82,15 +24,23 @@ def _any_of(*families: str) -> Requirement:
 
 
 class DeviceClass(NamedTuple):
-    """A device class: its name, and the requirements of which each must be met."""
+    """A device class: its name, and the requirements of which each must be met from version 5 on,
+    and before, where versions 2 and 4 ask for others."""
 
     name: str
     required: tuple[Requirement, ...]
+    before_5: tuple[Requirement, ...] = ()
+
+    def requirements(self, major_version: int) -> tuple[Requirement, ...]:
+        """What a profile of a version must have."""
+        return self.before_5 if self.before_5 and major_version < 5 else self.required
 
 
 _TO_PCS = _any_of("A2B", "D2B")
 _FROM_PCS = _any_of("B2A", "B2D")
 _MATRIX = ("rXYZ", "gXYZ", "bXYZ", "rTRC", "gTRC", "bTRC")
+_GRAY = ("kTRC",)
+_TABLES = tuple(f"{family}{n}" for family in ("A2B", "B2A") for n in "012")
 _NAMES: Requirement = (("mcta",),)
 
 # MID, MVIS and MLNK: the stricter reading, the transform and the names; the reference's earlier
@@ -99,22 +49,30 @@ DEVICE_CLASSES: dict[str, DeviceClass] = {
     "mid ": DeviceClass("multiplex identification", ((("A2M0",),), _NAMES)),
     "mvis": DeviceClass("multiplex visualization", (_any_of("M2B", "M2S"), _NAMES)),
     "mlnk": DeviceClass("multiplex link", ((("M2A0",),), _NAMES)),
-    "scnr": DeviceClass("input", ((*_TO_PCS, _MATRIX, ("kTRC",)),)),
-    "mntr": DeviceClass("display", ((*_TO_PCS, _MATRIX, ("kTRC",)),)),
-    "prtr": DeviceClass("output", ((*_TO_PCS, ("kTRC",)), (*_FROM_PCS, ("kTRC",)))),
-    "spac": DeviceClass("colour space", (_TO_PCS, _FROM_PCS)),
-    "abst": DeviceClass("abstract", (_TO_PCS,)),
-    "link": DeviceClass("device link", ((("A2B0",), ("D2B0",)),)),
-    "nmcl": DeviceClass("named colour", ((("ncl2",), ("nmcl",)),)),
+    "scnr": DeviceClass("input", ((*_TO_PCS, _MATRIX, _GRAY),), ((("A2B0",), _MATRIX, _GRAY),)),
+    "mntr": DeviceClass(
+        "display", ((*_TO_PCS, _MATRIX, _GRAY),), ((("A2B0", "B2A0"), _MATRIX, _GRAY),)
+    ),
+    "prtr": DeviceClass(
+        "output", ((*_TO_PCS, _GRAY), (*_FROM_PCS, _GRAY)), (((*_TABLES, "gamt"), _GRAY),)
+    ),
+    "spac": DeviceClass("colour space", (_TO_PCS, _FROM_PCS), ((("A2B0", "B2A0"),),)),
+    "abst": DeviceClass("abstract", (_TO_PCS,), ((("A2B0",),),)),
+    "link": DeviceClass("device link", ((("A2B0",), ("D2B0",)),), ((("A2B0", "pseq"),),)),
+    "nmcl": DeviceClass("named colour", ((("ncl2",), ("nmcl",)),), ((("ncl2",),),)),
     "cenc": DeviceClass("colour encoding", ((("rfnm",),),)),
 }
 MULTIPLEX_CLASSES = ("mid ", "mvis", "mlnk")
 
-# Tags that make no sense beside a multiplex connection space.
-NOT_IN_MULTIPLEX = (
-    *(f"{family}{n}" for family in ("A2B", "B2A") for n in "012"),
-    *("pseq", "gamt", "ncl2"),
-)
+# Tags that make no sense in a class, beside a multiplex connection space for example. A printer of
+# one ink has a kTRC, although the reference warns of it.
+NOT_IN: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(MULTIPLEX_CLASSES, (*_TABLES, "pseq", "gamt", "ncl2")),
+    "nmcl": (*_TABLES, "pseq", "gamt"),
+    "abst": ("A2B1", "A2B2", "B2A1", "B2A2", "ncl2", "gamt"),
+    "link": ("A2B1", "A2B2", "B2A1", "B2A2", "ncl2", "gamt", "wtpt"),
+}
+ONLY_IN_INPUT_AND_DISPLAY = (*_MATRIX, "cicp")
 
 # --- colour spaces ------------------------------------------------------------------------------
 

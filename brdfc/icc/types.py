@@ -114,8 +114,7 @@ class Opaque(Tag):
 DECODERS: dict[bytes, Callable[[bytes, str], Tag]] = {
     b"mluc": LocalizedText.decode,
     b"utf8": Utf8Text.decode,
-    b"zutf": CompressedText.decode,
-    b"zxml": CompressedText.decode,
+    **dict.fromkeys((b"zut8", b"zxml", b"ZXML"), CompressedText.decode),
     b"text": PlainText.decode,
     b"desc": TextDescription.decode,
     b"dict": Dictionary.decode,

@@ -17,15 +17,27 @@ from brdfc.icc.layout import unpack, unpack_records
 from brdfc.icc.profile import TABLE_START, Profile, compute_profile_id
 from brdfc.icc.signatures import (
     DEVICE_CLASSES,
-    MULTIPLEX_CLASSES,
     NO_SPACE,
-    NOT_IN_MULTIPLEX,
-    TAGS,
+    NOT_IN,
+    ONLY_IN_INPUT_AND_DISPLAY,
     Requirement,
     signature_text,
     space_channels,
 )
-from brdfc.icc.types import Dictionary, NumberArray, Pipeline, Utf8Array, XYZArray
+from brdfc.icc.tags import TAGS
+from brdfc.icc.types import (
+    Dictionary,
+    FixedArray,
+    NamedColours,
+    NumberArray,
+    Pipeline,
+    Record,
+    StagedLut,
+    TableLut,
+    Tag,
+    Utf8Array,
+    XYZArray,
+)
 
 
 def validate(profile: Profile) -> list[Finding]:
@@ -34,7 +46,7 @@ def validate(profile: Profile) -> list[Finding]:
         *header_findings(profile.header),
         *_required_tags(profile),
         *_unfit_tags(profile),
-        *_pipelines(profile),
+        *_transforms(profile),
         *_channel_names(profile),
         *_values(profile),
         *_layout(profile.source),
@@ -52,7 +64,11 @@ def _required_tags(profile: Profile) -> Iterator[Finding]:
     if header.device_class not in ("link", "mid ", "mlnk", "cenc") and header.pcs != NO_SPACE:
         required.append((("wtpt",),))
     if header.device_class in DEVICE_CLASSES:
-        required += DEVICE_CLASSES[header.device_class].required
+        required += DEVICE_CLASSES[header.device_class].requirements(header.major_version)
+    if header.device_class in ("prtr", "link") and header.major_version >= 4:
+        for space, tag in ((header.colour_space, "clrt"), (header.pcs, "clot")):
+            if space[1:] == b"CLR":
+                required.append(((tag,),))
     for alternatives in required:
         if not any(all(tag in tags for tag in alternative) for alternative in alternatives):
             texts = (" with ".join(alternative) for alternative in alternatives)
@@ -67,24 +83,26 @@ def _required_tags(profile: Profile) -> Iterator[Finding]:
 
 def _unfit_tags(profile: Profile) -> Iterator[Finding]:
     header = profile.header
+    unfit = NOT_IN.get(header.device_class, ())
+    if header.device_class not in ("scnr", "mntr", "cenc"):
+        unfit += ONLY_IN_INPUT_AND_DISPLAY
     for signature, tag in profile.tags.items():
-        if header.device_class in MULTIPLEX_CLASSES and signature in NOT_IN_MULTIPLEX:
+        if signature in unfit:
             yield warning(f"has no meaning in class '{header.device_class}'", signature)
-        # Version 2 had other types for text; what came with version 5 needs no check before it.
         kind = TAGS.get(signature)
-        if kind and header.major_version >= 4 and tag.type_signature not in kind.types:
-            expected = " or ".join(kind.types)
-            yield error(f"of type '{tag.type_signature}', not {expected}", signature)
+        allowed = kind.allowed(header.major_version) if kind else ()
+        if allowed and tag.type_signature not in allowed:
+            yield error(f"of type '{tag.type_signature}', not {' or '.join(allowed)}", signature)
 
 
 # --- what is in them ----------------------------------------------------------------------------
 
 
-def _pipelines(profile: Profile) -> Iterator[Finding]:
+def _transforms(profile: Profile) -> Iterator[Finding]:
     """Channel counts: of the tag against the header, and from element to element."""
     seen: set[int] = set()
     for signature, tag in profile.tags.items():
-        if not isinstance(tag, Pipeline):
+        if not isinstance(tag, (Pipeline, TableLut, StagedLut)):
             continue
         sides = TAGS[signature].channels if signature in TAGS else None
         actual = (tag.inputs, tag.outputs)
@@ -92,7 +110,9 @@ def _pipelines(profile: Profile) -> Iterator[Finding]:
             expected = _channels(side, profile.header)
             if expected not in (None, count):
                 yield error(f"{count} channels {name}, the header says {expected}", signature)
-        if id(tag) not in seen:  # thousands of signatures may share one pipeline
+        if (
+            isinstance(tag, Pipeline) and id(tag) not in seen
+        ):  # thousands of signatures may share one pipeline
             seen.add(id(tag))
             yield from _chain(signature, tag)
 
@@ -152,15 +172,42 @@ def _channel_names(profile: Profile) -> Iterator[Finding]:
 
 
 def _values(profile: Profile) -> Iterator[Finding]:
-    white, metadata = profile.tags.get("wtpt"), profile.tags.get("meta")
-    if isinstance(white, XYZArray) and len(white.values) != 1:
-        yield error(f"{len(white.values)} white points, not 1", "wtpt")
+    for signature, side, what in _COUNTED:
+        tag, expected = profile.tags.get(signature), _channels(side, profile.header)
+        count = _count(tag) if tag else None
+        if expected and count is not None and count != expected:
+            yield error(f"{count} {what}, not {expected}", signature)
+    metadata = profile.tags.get("meta")
     if isinstance(metadata, Dictionary):
         names = [name for name, _ in metadata.entries]
         if "" in names:
             yield warning("an entry without a name", "meta")
         for name in _repeated(names):
             yield warning(f"two entries are called '{name}'", "meta")
+
+
+_COUNTED = (
+    *((signature, "1", "colours") for signature in ("wtpt", "bkpt", "lumi")),
+    *((f"{colour}XYZ", "1", "colours") for colour in "rgb"),
+    ("chad", "9", "numbers"),
+    ("clrt", "device", "colorants"),
+    ("clot", "pcs", "colorants"),
+    ("clro", "device", "colorants"),
+    ("ncl2", "device", "device coordinates"),
+)
+"""Tags, how many values they have (TagKind.channels), and of what."""
+
+
+def _count(tag: Tag) -> int | None:
+    """The values in a tag that _COUNTED has; None if it holds others."""
+    match tag:
+        case XYZArray(values) | FixedArray(_, values):
+            return len(values)
+        case Record("clrt" | "clro"):
+            return len(tag.rows)
+        case NamedColours():
+            return tag.coordinates or None
+    return None
 
 
 def _repeated(names: tuple[str, ...] | list[str]) -> list[str]:
@@ -174,7 +221,7 @@ def _layout(source: bytes | None) -> Iterator[Finding]:
     """Alignment, double entries and the profile ID, of a profile that was read."""
     if source is None:
         return
-    if len(source) % 4:
+    if len(source) % 4 and source[8] >= 4:  # version 2 does not pad the last tag
         yield error(f"a size of {len(source)} bytes is not a multiple of 4")
     (count,) = unpack("I", source, TABLE_START - 4, "tag table")
     records = unpack_records("4sII", count, source, TABLE_START, "tag table")

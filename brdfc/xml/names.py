@@ -3,7 +3,8 @@ names that it reads)."""
 
 from __future__ import annotations
 
-from brdfc.icc.signatures import TAGS, signature_bytes, space_text
+from brdfc.icc.signatures import signature_bytes, space_text
+from brdfc.icc.tags import TAGS
 
 # --- tags ---------------------------------------------------------------------------------------
 
@@ -13,37 +14,13 @@ _OTHER_NAMES = {
     "mcta": "materialTypeArray",
     "mdv ": "materialDefaultValues",
     "H2S2": "HTSB2",
+    "CxF ": "Cxf",
+    **{f"{c[0]}XYZ": f"{c}Colorant" for c in ("red", "green", "blue")},
     **{f"bAB{n}": f"BRDFAToB{n}" for n in "0123"},
     **{f"bDB{n}": f"BRDFDToB{n}" for n in "0123"},
 }
-# Tags that brdfc carries without knowing what is in them.
-_CARRIED = {
-    "bkpt": "mediaBlackPoint",
-    "calt": "calibrationDateTime",
-    "chad": "chromaticAdaptation",
-    "chrm": "chromaticity",
-    "cicp": "cicp",
-    "clro": "colorantOrder",
-    "clrt": "colorantTable",
-    "clot": "colorantTableOut",
-    "dmdd": "deviceModelDesc",
-    "dmnd": "deviceMfgDesc",
-    "gamt": "gamut",
-    "lumi": "luminance",
-    "meas": "measurement",
-    "pseq": "profileSequenceDesc",
-    "tech": "technology",
-    "targ": "charTarget",
-    "view": "viewingConditions",
-    "vued": "viewingCondDesc",
-    "csnm": "colorSpaceName",
-    "rfnm": "referenceName",
-    "sdin": "spectralDataInfo",
-    **{f"{c[0]}XYZ": f"{c}Colorant" for c in ("red", "green", "blue")},
-    **{f"{c[0] if c != 'gray' else 'k'}TRC": f"{c}TRC" for c in ("red", "green", "blue", "gray")},
-}
-_REFERENCE_LACKS = ("clin", "clio", "nmcl")
-"""colorantInfo has another signature there; namedColor no name."""
+_REFERENCE_LACKS = ("clin", "clio", "nmcl", "ciis")
+"""colorantInfo has another signature there; the others no name."""
 
 TAG_NAMES: dict[str, str] = {
     **{
@@ -51,7 +28,6 @@ TAG_NAMES: dict[str, str] = {
         for signature, kind in TAGS.items()
         if signature not in _REFERENCE_LACKS
     },
-    **{signature: name + "Tag" for signature, name in _CARRIED.items()},
 }
 """The element of a tag, by signature; any other tag is a PrivateTag."""
 

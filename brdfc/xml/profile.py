@@ -6,7 +6,8 @@ from pathlib import Path
 
 from brdfc.files import read_file
 from brdfc.icc.profile import Profile
-from brdfc.icc.signatures import TAGS, signature_bytes
+from brdfc.icc.signatures import signature_bytes
+from brdfc.icc.tags import TAGS
 from brdfc.icc.types import Pipeline, Tag, Utf8Array
 from brdfc.profiles.metadata import describe
 from brdfc.source.errors import ProfileError, ProgramError

@@ -35,7 +35,7 @@ TYPES: dict[str, Tag] = {
     "text": PlainText("targets: é"),
     "desc": TextDescription("Ward", "Wärd 𝛾", 7, b"W\x8ard\0", 3),
     "desc short": TextDescription(""),
-    "zutf": CompressedText("zutf", zlib.compress("spectra ρ".encode())),
+    "zut8": CompressedText("zut8", zlib.compress("spectra ρ".encode())),
     "zxml": CompressedText("zxml", b"not compressed at all"),
     "dtim": Record(
         "dtim",

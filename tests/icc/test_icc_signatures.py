@@ -4,9 +4,8 @@ import pytest
 
 from brdfc.icc.signatures import (
     DEVICE_CLASSES,
-    NOT_IN_MULTIPLEX,
+    NOT_IN,
     SPACE_SIZES,
-    TAGS,
     counted_space,
     multiplex_space,
     n_channel_space,
@@ -16,6 +15,7 @@ from brdfc.icc.signatures import (
     space_from_text,
     space_text,
 )
+from brdfc.icc.tags import TAGS
 from brdfc.source.errors import ProfileError
 
 
@@ -63,7 +63,7 @@ def test_a_prefix_without_a_count():
 
 
 def test_tables_hold_signatures_only():
-    names = [*TAGS, *DEVICE_CLASSES, *NOT_IN_MULTIPLEX]
-    names += [kind for tag in TAGS.values() for kind in tag.types]
+    names = [*TAGS, *DEVICE_CLASSES, *(tag for tags in NOT_IN.values() for tag in tags)]
+    names += [kind for tag in TAGS.values() for kind in (*tag.types, *tag.before_4, *tag.since_5)]
     assert all(signature_text(signature_bytes(name)) == name for name in names)
     assert all(len(space) == 4 for space in SPACE_SIZES)

@@ -109,7 +109,7 @@ def test_nothing_to_say(profile):
         (mid(mcta=Utf8Array(("a", "b", "a"))), "mcta", "two channels are called 'a'"),
         (mid(mcta=Opaque(b"tary\0\0\0\0mcta\0\0\0\0")), "mcta", "do not connect"),
         (mid(mdv=NumberArray("ui08", (1, 2))), "mdv ", "2 defaults for 3 channels"),
-        (mvis(wtpt=XYZArray(())), "wtpt", "0 white points"),
+        (mvis(wtpt=XYZArray(())), "wtpt", "0 colours, not 1"),
     ],
 )
 def test_errors(profile, tag, message):
