@@ -6,9 +6,11 @@ import atexit
 import difflib
 import os
 import shutil
+import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from types import FrameType
 
 import pytest
 
@@ -34,6 +36,29 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--programs", type=int, default=150, help="random programs that engines are compared on"
     )
+
+
+@pytest.fixture
+def function_calls() -> Callable[[Callable[[], object]], int]:
+    """How many functions of Python are called while one runs: how much work it is, on any machine
+    and however busy that is."""
+
+    def count(run: Callable[[], object]) -> int:
+        calls = 0
+
+        def note(_frame: FrameType, event: str, _argument: object) -> None:
+            nonlocal calls
+            calls += event == "call"
+
+        before = sys.getprofile()
+        sys.setprofile(note)
+        try:
+            run()
+        finally:
+            sys.setprofile(before)
+        return calls
+
+    return count
 
 
 @pytest.fixture

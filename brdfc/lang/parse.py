@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 
 from lark import Lark, TextSlice, Token, Tree
 from lark.exceptions import UnexpectedInput
@@ -37,6 +37,7 @@ class Parsed:
     unread: frozenset[str]
 
 
+@lru_cache(maxsize=128)  # models import the same few files again and again
 def parse(source: Source) -> Parsed:
     """The statements of a text. Never raises for a bad text: see Parsed.diagnostics."""
     if len(source.text) > MAX_TEXT:

@@ -212,10 +212,10 @@ SAMF = struct.pack(">4sIIf", b"samf", 0, 1, 1)
 )
 def test_malformed(data, message):
     tracemalloc.start()
-    started = time.perf_counter()
+    started = time.process_time()
     with pytest.raises(ProgramError, match=message) as caught:
         decode_element(data, "M2B0")
-    assert time.perf_counter() - started < 1
+    assert time.process_time() - started < 2
     assert tracemalloc.get_traced_memory()[1] < 1_000_000
     tracemalloc.stop()
     assert caught.value.where.startswith("M2B0")
@@ -240,11 +240,11 @@ def test_mutations(element, data):
         place = data.draw(st.integers(0, min(len(encoded), 120) - 1))
         encoded[place] = data.draw(st.sampled_from([0, 1, 2, 3, 0x7F, 0x80, 0xFF]))
     end = data.draw(st.sampled_from([len(encoded), len(encoded) - 1, len(encoded) // 2]))
-    started = time.perf_counter()
+    started = time.process_time()
     with contextlib.suppress(ProgramError):
         found = decode_element(bytes(encoded[:end]), "x")
         run(found, [[0.25] * found.inputs] * 3, {})
-    assert time.perf_counter() - started < 1
+    assert time.process_time() - started < 2
 
 
 # ---------------------------------------------------------------- in a program

@@ -19,7 +19,8 @@ from brdfc.calc.verify import verify
 from brdfc.engine.interpreter import run
 from brdfc.source.errors import ProgramError
 
-SECOND = 1.0
+SECOND = 2.0
+"""Of processor time, which a busy machine has hardly more of than an idle one."""
 
 
 def op(name: str, first: int = 0, second: int = 0) -> bytes:
@@ -48,10 +49,10 @@ def simple(*words: bytes, count: int | None = None) -> bytes:
 def refused(data: bytes) -> str:
     """The message of decoding, or of verifying what was decoded; soon, and in little memory."""
     tracemalloc.start()
-    started = time.perf_counter()
+    started = time.process_time()
     with pytest.raises(ProgramError) as caught:
         verify(decode_element(data, "M2B0"), "M2B0")
-    assert time.perf_counter() - started < SECOND
+    assert time.process_time() - started < SECOND
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < 10_000_000 + 100 * len(data)
@@ -265,9 +266,9 @@ def test_noise():
 
 
 def attempt(data: bytes) -> None:
-    started = time.perf_counter()
+    started = time.process_time()
     with contextlib.suppress(ProgramError):
         element = decode_element(data, "M2B0")
         if isinstance(element, Program | Matrix) and element.inputs < 100:
             run(element, [[0.25] * element.inputs] * 3, {"thti": 0.5})
-    assert time.perf_counter() - started < 2 * SECOND
+    assert time.process_time() - started < 2 * SECOND

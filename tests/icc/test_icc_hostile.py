@@ -20,16 +20,17 @@ from brdfc.icc.validate import validate
 from brdfc.source.errors import BrdfcError, ProfileError
 
 GOOD = mid().to_bytes()
-SECOND = 1.0
+SECOND = 2.0
+"""Of processor time, which a busy machine has hardly more of than an idle one."""
 
 
 def refused(data: bytes) -> ProfileError:
     """The error that reading gives, which comes soon and takes little memory."""
     tracemalloc.start()
-    started = time.perf_counter()
+    started = time.process_time()
     with pytest.raises(ProfileError) as caught:
         Profile.from_bytes(data, "x.icc")
-    assert time.perf_counter() - started < SECOND
+    assert time.process_time() - started < SECOND
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < 10_000_000 + 2 * len(data)
@@ -94,11 +95,11 @@ def test_many_tags_and_elements_at_one_place_cost_what_one_does():
     step = Matrix(60, 60, (0.5,) * 3600, (0.0,) * 60)
     pipeline = Pipeline(60, 60, (step,) * 60_000)
     data = Profile(Header("mid "), {f"{n:04x}": pipeline for n in range(20_000)}).to_bytes()
-    started = time.perf_counter()
+    started = time.process_time()
     profile = Profile.from_bytes(data)
     validate(profile)
     assert profile.to_bytes() == data
-    assert time.perf_counter() - started < 3 * SECOND
+    assert time.process_time() - started < 3 * SECOND
 
 
 def test_deep_nesting_ends():
@@ -124,12 +125,12 @@ def test_a_file_beyond_the_limit_is_not_read(tmp_path):
 
 def survives(data: bytes) -> None:
     """Reading gives a profile or a ProfileError; what was read can be judged and written."""
-    started = time.perf_counter()
+    started = time.process_time()
     with contextlib.suppress(ProfileError):
         profile = Profile.from_bytes(data)
         validate(profile)
         Profile.from_bytes(profile.to_bytes())
-    assert time.perf_counter() - started < SECOND
+    assert time.process_time() - started < SECOND
 
 
 VALID = (GOOD, mvis().to_bytes(), MINIMAL_MID)

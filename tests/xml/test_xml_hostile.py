@@ -24,7 +24,7 @@ from brdfc.source.errors import BrdfcError
 from brdfc.xml.document import SIZE_LIMIT
 from brdfc.xml.profile import to_xml
 
-SECONDS = 1.0
+SECONDS = 2.0
 MEGABYTES = 200
 
 
