@@ -12,8 +12,8 @@ from brdfc.calc.portability import listed
 from brdfc.calc.program import Program
 from brdfc.calc.verify import verify
 from brdfc.icc.profile import Profile
-from brdfc.icc.signatures import TAGS
 from brdfc.icc.structures import Structure
+from brdfc.icc.tags import TAGS
 from brdfc.icc.texts import Utf8Array
 from brdfc.icc.types import Pipeline, Tag
 from brdfc.profiles.metadata import Described, describe

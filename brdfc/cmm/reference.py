@@ -248,7 +248,7 @@ def _serve(folder: Path) -> None:
     else:
         with np.load(folder / "arrays.npz") as arrays:
             answer = _apply(request, arrays["pixels"])
-    np.savez(folder / "answer.npz", **answer)
+    np.savez(folder / "answer.npz", **answer)  # type: ignore[arg-type]
 
 
 if __name__ == "__main__":

@@ -1,15 +1,18 @@
 """What verification proves and refuses, with the index of the operation as a file counts."""
 
+import time
+
 import pytest
 from calc_programs import programs
 from hypothesis import given, settings
 
 from brdfc.calc.binary import decode_element, encode_element
+from brdfc.calc.facts import Facts
 from brdfc.calc.operators import OPERATORS, Operand
 from brdfc.calc.price import operations
 from brdfc.calc.program import If, Matrix, Op, OpaqueElement, Program, Select, encoded_length
 from brdfc.calc.text import assemble
-from brdfc.calc.verify import Facts, verify
+from brdfc.calc.verify import verify
 from brdfc.source.errors import ProgramError
 
 MATRIX = Matrix(2, 1, (1.0, 2.0), (0.0,))
