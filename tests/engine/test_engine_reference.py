@@ -17,6 +17,7 @@ import pytest
 from calc.calc_programs import EVERY, INPUTS, random_program
 from engine_reference import dispatcher, encoded, judged, ulps
 
+from brdfc.calc.disagreements import DISAGREEMENTS
 from brdfc.calc.operators import OPERATORS
 from brdfc.calc.portability import portability
 from brdfc.calc.program import Matrix, Program
@@ -133,6 +134,15 @@ def random_pixels(count):
     pixels = random.normal(size=(count, INPUTS)) * 10 ** random.uniform(-2, 2, size=(count, 1))
     whole = random.integers(-1, 4, size=(count, INPUTS))
     return np.where(random.random((count, INPUTS)) < 0.5, pixels, whole).astype(np.float32)
+
+
+def test_the_newest_release_does_what_the_table_of_disagreements_says(tmp_path):
+    rows = [row for row in DISAGREEMENTS if row.result is not None]
+    texts = ["{" + row.example + " copy(1,2) out[0,3] }" for row in rows]
+    programs = [Program(3, 3, assemble(text)) for text in texts]
+    found = judged(tmp_path, programs, np.zeros((1, 3), np.float32))[0]
+    for row, theirs in zip(rows, found, strict=True):
+        assert (theirs == encoded(np.float32(row.result))).all(), row.when
 
 
 def test_random_programs_bit_for_bit(tmp_path):
