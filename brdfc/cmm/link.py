@@ -170,9 +170,9 @@ def connect(
     MVIS, "A2B1" or "bAB0" of a profile of device values. extrapolate: take variables outside the
     ranges that the profile states too. engine: what runs it, a choice.Engine or its name. threads:
     as many as there are processors where None.
-    Raises ProfileError for what is no profile, ProgramError for a program that cannot be proven
-    safe, LinkError for profiles that do not connect, ValueGivenError for variables that do not
-    exist or are outside their range.
+    Raises ProfileError for what is no profile, LinkError for profiles that do not connect, or whose
+    programs cannot be proven safe, ValueGivenError for variables that do not exist or are outside
+    their range.
     """
     loaded = [_profile(p) for p in profiles]
     if len(loaded) == 1:

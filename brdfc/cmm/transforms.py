@@ -14,7 +14,7 @@ from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import NO_SPACE
 from brdfc.icc.types import Pipeline
 from brdfc.profiles.metadata import Described, describe
-from brdfc.source.errors import LinkError
+from brdfc.source.errors import LinkError, ProgramError
 
 Values = NDArray[np.float32]
 
@@ -87,12 +87,16 @@ def transform_variables(
 ) -> tuple[tuple[str, Described | None], ...]:
     """The variables a transform reads: signature, and its description if it has one.
 
-    Its programs are proven on the way; ProgramError names the element and the operation.
+    Its programs are proven on the way; LinkError names the element and the operation.
     """
     described = {d.signature: d for d in describe(profile, "env")}
     signatures: dict[str, None] = {}
     for index, element in enumerate(pipeline(profile, transform).elements):
         if isinstance(element, Program):
-            facts = verify(element, f"tag '{transform}', element {index}")
+            try:
+                facts = verify(element, f"tag '{transform}', element {index}")
+            except ProgramError as error:
+                message = f"the profile's program is refused: {error.message}"
+                raise LinkError(message, where=error.where) from error
             signatures |= dict.fromkeys(facts.variables)
     return tuple((s, described.get(s)) for s in signatures if s not in ("true", "ndef"))
