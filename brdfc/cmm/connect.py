@@ -57,9 +57,9 @@ def connect(
     variables outside the ranges that the profiles state too. engine: what runs it, a choice.Engine
     or its name. threads: as many as there are processors where None. interpolation: of lookup
     tables of three inputs, a tables.Interpolation or its name; others are always linear.
-    Raises ProfileError for what is no profile, ProgramError for a program that cannot be proven
-    safe, LinkError for profiles that do not connect, ValueGivenError for variables that do not
-    exist or are outside their range.
+    Raises ProfileError for what is no profile, LinkError for profiles that do not connect, or whose
+    programs cannot be proven safe, ValueGivenError for variables that do not exist or are outside
+    their range.
     """
     loaded = [_profile(p) for p in profiles]
     if not loaded:
@@ -114,8 +114,9 @@ def _stages(
         try:
             stages.append(stage_of(profile, given, following, intent, asked))
         except LinkError as error:
-            where = f"profile {index + 1} of {len(profiles)}" if len(profiles) > 1 else None
-            raise LinkError(error.message, where=where, hint=error.hint) from error
+            places = [f"profile {index + 1} of {len(profiles)}"] if len(profiles) > 1 else []
+            where = ", ".join([*places, *([error.where] if error.where else [])])
+            raise LinkError(error.message, where=where or None, hint=error.hint) from error
     return tuple(stages)
 
 

@@ -11,7 +11,7 @@ from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import NO_SPACE
 from brdfc.icc.types import Pipeline
 from brdfc.profiles.metadata import Described, describe
-from brdfc.source.errors import LinkError
+from brdfc.source.errors import LinkError, ProgramError
 
 Transform = Pipeline | TableLut | StagedLut
 Variables = tuple[tuple[str, Described | None], ...]
@@ -40,11 +40,15 @@ def leads_to_reflectances(profile: Profile, transform: str) -> bool:
 def variables_of(profile: Profile, transform: str, elements: Iterable[Element]) -> Variables:
     """The variables that the programs of a transform read.
 
-    Its programs are proven on the way; ProgramError names the element and the operation.
+    Its programs are proven on the way; LinkError names the element and the operation.
     """
     described = {d.signature: d for d in describe(profile, "env")}
     signatures: dict[str, None] = {}
     for index, element in enumerate(elements):
-        facts = verify(element, f"tag '{transform}', element {index}")
+        try:
+            facts = verify(element, f"tag '{transform}', element {index}")
+        except ProgramError as error:
+            message = f"the profile's program is refused: {error.message}"
+            raise LinkError(message, where=error.where) from error
         signatures |= dict.fromkeys(facts.variables)
     return tuple((s, described.get(s)) for s in signatures if s not in ("true", "ndef"))
