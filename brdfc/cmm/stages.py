@@ -119,8 +119,8 @@ def stage_of(
     """The stage of a profile in a chain.
 
     given: what comes before it, if anything. following: the profile after it. transform: the tag
-    that is asked for. Raises LinkError where the profile cannot stand here, or its program cannot be
-    proven safe.
+    that is asked for. Raises LinkError where the profile cannot stand here, or its program cannot
+    be proven safe.
     """
     role = _role(profile, given, following)
     takes, gives = _spaces(profile, role)

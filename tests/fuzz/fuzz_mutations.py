@@ -14,7 +14,7 @@ from collections.abc import Callable
 from fuzz_programs import with_another_program
 
 from brdfc.calc.operators import BY_SIGNATURE, CASE, DEFAULT, ELSE, IF, SELECT
-from brdfc.icc.signatures import TAGS
+from brdfc.icc.tags import TAGS
 from brdfc.icc.types import DECODERS
 
 Change = Callable[[bytearray, random.Random], None]
