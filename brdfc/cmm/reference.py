@@ -242,6 +242,7 @@ def _apply(request: dict[str, Any], pixels: NDArray[np.float32]) -> dict[str, An
 
 def _serve(folder: Path) -> None:
     request = json.loads((folder / "request.json").read_text())
+    answer: dict[str, Any]
     if request["task"] == "validate":
         statuses, reports = zip(*map(_validate, request["profiles"]), strict=True)
         answer = {"statuses": np.array(statuses), "reports": np.array(reports)}
