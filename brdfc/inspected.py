@@ -47,6 +47,15 @@ class Transform:
 
 
 @dataclass(frozen=True)
+class OtherTag:
+    """A tag of no elements: its name and type; summary: what a curve or lookup table does."""
+
+    name: str
+    type: str
+    summary: str = ""
+
+
+@dataclass(frozen=True)
 class Channel:
     """A multiplex channel; default is None where the profile has none."""
 
@@ -78,6 +87,6 @@ class Inspection:
     channels: tuple[Channel, ...]
     variables: tuple[Variable, ...]
     transforms: tuple[Transform, ...]
-    other_tags: dict[str, str]
+    other_tags: dict[str, OtherTag]
     metadata: dict[str, str]
     verdicts: dict[str, tuple[str, ...]]

@@ -21,11 +21,12 @@ from brdfc.icc.signatures import (
     space_channels,
     space_text,
 )
+from brdfc.icc.summaries import summary
 from brdfc.icc.tags import TAGS
 from brdfc.icc.texts import Dictionary, LocalizedText, Utf8Array
-from brdfc.icc.types import NumberArray, Pipeline
+from brdfc.icc.types import NumberArray, Pipeline, TextDescription
 from brdfc.icc.validate import validate
-from brdfc.inspected import Calculator, Channel, Inspection, Part, Transform, Variable
+from brdfc.inspected import Calculator, Channel, Inspection, OtherTag, Part, Transform, Variable
 from brdfc.profiles.metadata import describe, value_text
 from brdfc.programs import Examined, distinct_transforms, examined, place, transforms
 from brdfc.source.errors import BrdfcError, ProgramError
@@ -69,13 +70,15 @@ def inspect(path: str | Path, engine: bool = True) -> Inspection:
         device_class=header.device_class.strip(),
         class_name=device_class.name if device_class else "unknown",
         version=f"{major:x}.{minor:02x}",
-        title=title.text if isinstance(title, LocalizedText) else "",
+        title=title.text if isinstance(title, (LocalizedText, TextDescription)) else "",
         spaces=_spaces(profile),
         channels=_channels(profile),
         variables=_variables(profile, transforms),
         transforms=transforms,
         other_tags={
-            signature: TAGS[signature].name if signature in TAGS else ""
+            signature: OtherTag(
+                TAGS[signature].name if signature in TAGS else "", tag.type_signature, summary(tag)
+            )
             for signature, tag in profile.tags.items()
             if not isinstance(tag, Pipeline)
         },

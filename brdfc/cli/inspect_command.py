@@ -61,7 +61,11 @@ def _lines(found: Inspection) -> Iterator[str]:
         yield from _transform(transform)
     if len(found.transforms) > _MOST:
         yield from _row("", f"and {len(found.transforms) - _MOST} transforms more")
-    yield from _row("other tags", ", ".join(found.other_tags), most=2)
+    shown = {tag: other for tag, other in found.other_tags.items() if other.summary}
+    for tag, other in list(shown.items())[:_MOST]:
+        yield from _row(tag, f"{other.name}, {other.summary}", most=1)
+    rest = [tag for tag in found.other_tags if tag not in list(shown)[:_MOST]]
+    yield from _row("other tags", ", ".join(rest), most=2)
     meta = [f"{name} {value}" for name, value in found.metadata.items()]
     yield from _row("metadata", "; ".join(meta), most=4)
     for who, findings in found.verdicts.items():
@@ -72,7 +76,7 @@ def _lines(found: Inspection) -> Iterator[str]:
 
 
 _MOST = 8
-"""Transforms, and elements of each, that fit on the screen."""
+"""Transforms, elements of each, and lookup tables and curves, that fit on the screen."""
 
 
 def _transform(transform: Transform) -> Iterator[str]:

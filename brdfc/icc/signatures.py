@@ -54,11 +54,13 @@ DEVICE_CLASSES: dict[str, DeviceClass] = {
         "display", ((*_TO_PCS, _MATRIX, _GRAY),), ((("A2B0", "B2A0"), _MATRIX, _GRAY),)
     ),
     "prtr": DeviceClass(
-        "output", ((*_TO_PCS, _GRAY), (*_FROM_PCS, _GRAY)), (((*_TABLES, "gamt"), _GRAY),)
+        "output",
+        ((*_TO_PCS, _GRAY), (*_FROM_PCS, _GRAY)),
+        tuple(((tag,), _GRAY) for tag in (*_TABLES, "gamt")),
     ),
     "spac": DeviceClass("colour space", (_TO_PCS, _FROM_PCS), ((("A2B0", "B2A0"),),)),
     "abst": DeviceClass("abstract", (_TO_PCS,), ((("A2B0",),),)),
-    "link": DeviceClass("device link", ((("A2B0",), ("D2B0",)),), ((("A2B0", "pseq"),),)),
+    "link": DeviceClass("device link", ((("A2B0",), ("D2B0",)),), ((("A2B0",),), (("pseq",),))),
     "nmcl": DeviceClass("named colour", ((("ncl2",), ("nmcl",)),), ((("ncl2",),),)),
     "cenc": DeviceClass("colour encoding", ((("rfnm",),),)),
 }

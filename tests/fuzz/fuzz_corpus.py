@@ -9,10 +9,13 @@ from functools import cache
 from pathlib import Path
 
 import brdfc
-from brdfc.calc.binary import encode_element
-from brdfc.calc.curves import CurveSet, OpaqueCurve, SegmentedCurve
+from brdfc.calc.appearance import AppearanceTransform
+from brdfc.calc.calculator_curves import CalculatorCurve
+from brdfc.calc.curves import CurveSet, SegmentedCurve
 from brdfc.calc.program import Op, OpaqueElement, Program
+from brdfc.calc.samples import Samples
 from brdfc.calc.text import assemble, disassemble
+from brdfc.calc.tints import TintArray
 from brdfc.icc.header import D50, Header
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import multiplex_space
@@ -24,6 +27,7 @@ sys.path += [str(TESTS / "icc"), str(TESTS / "calc")]
 
 from calc_elements import FORMULAS, LINE, SAMPLED, SEGMENTED, SHARED, TABLES  # noqa: E402
 from calc_programs import random_program  # noqa: E402
+from icc_profiles import V2, V4, display, gray, link, named, printer  # noqa: E402
 from icc_samples import MINIMAL_MID, mid, mvis  # noqa: E402
 
 EXAMPLES = TESTS.parent / "examples" / "xml"
@@ -37,6 +41,7 @@ def profiles(whole: bool = True) -> tuple[bytes, ...]:
     return (
         MINIMAL_MID,
         *(p.to_bytes() for p in (mid(), mvis(), elements(), carried())),
+        *(p.to_bytes() for p in older() if len(p.to_bytes()) < MOST),
         *(with_program(random_program(seed, length=30)).to_bytes() for seed in (0, 1, 4)),
         *(encoded(load_xml(EXAMPLES / name)) for name in ("inks.xml", "display.xml")),
         *(profile.to_bytes() for profile in (compiled() if whole else ())),
@@ -85,6 +90,17 @@ def compiled() -> Iterator[Profile]:
         yield from compiled.profiles
 
 
+MOST = 6000
+"""Bytes of a profile that a mutation still finds the parts of."""
+
+
+def older() -> Iterator[Profile]:
+    """Profiles of versions 2 and 4, of every tag type of theirs."""
+    for version in (V2, V4):
+        for make in (display, printer, gray, named, link):
+            yield make(version)
+
+
 def with_program(program: Program) -> Profile:
     """An MVIS with this program."""
     names = tuple(f"c{i}" for i in range(program.inputs))
@@ -115,14 +131,10 @@ def carried() -> Profile:
     kinds = ("fl16", "fl32", "fl64", "ui08", "ui16", "ui32", "ui64")
     tags: dict[str, Tag] = {kind: NumberArray(kind, (0, 1, 2)) for kind in kinds}
     tags["text"] = Opaque(b"text" + bytes(4) + b"carried\0")
-    sampled = struct.pack(">4sIIffHH", b"clcf", 0, 9, 0.0, 1.0, 0, 0)
-    sampled += encode_element(Program(1, 1, assemble("{ in out }")))
-    shades = NumberArray("fl32", (0, 0, 0, 1, 1, 1)).encode()
-    view = struct.pack(">4sIHH8f", b"XtoJ", 0, 3, 3, 0.96, 1, 0.82, 60, 20, 0.69, 1, 1)
     elements = (
-        CurveSet((OpaqueCurve(sampled),)),
-        OpaqueElement("tint", 1, 3, struct.pack(">4sIHH", b"tint", 0, 1, 3) + shades),
-        OpaqueElement("XtoJ", 3, 3, view),
+        CurveSet((CalculatorCurve(9, 0.0, 1.0, Program(1, 1, assemble("{ in out }"))),)),
+        TintArray(3, Samples.of((0, 0, 0, 1, 1, 1))),
+        AppearanceTransform("XtoJ", (0.96, 1, 0.82), 60, 20, 0.69, 1, 1),
         OpaqueElement("emtx", 3, 1, struct.pack(">4sIHH", b"emtx", 0, 3, 1) + bytes(20)),
     )
     tags["D2B0"] = Pipeline(1, 1, elements)

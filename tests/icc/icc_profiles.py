@@ -99,9 +99,9 @@ GOOD = {
 BAD: dict[str, tuple[Profile, str, str]] = {
     "no curve": (display(gTRC=None), "A2B0", "required: A2B0 with B2A0 or rXYZ"),
     "one way": (display(rTRC=None, A2B0=table_lut(16, 3, 3, 2, 4)), "A2B0", "required: A2B0 with"),
-    "no gamut": (printer(gamt=None), "A2B0", "required: A2B0 with A2B1"),
-    "one intent": (printer(A2B1=None), "A2B0", "required: A2B0 with A2B1"),
-    "no sequence": (link(pseq=None), "A2B0", "required: A2B0 with pseq"),
+    "no gamut": (printer(gamt=None), "gamt", "required: gamt or kTRC"),
+    "one intent": (printer(A2B1=None), "A2B1", "required: A2B1 or kTRC"),
+    "no sequence": (link(pseq=None), "pseq", "required: pseq"),
     "inks without names": (link(clot=None), "clot", "required: clot"),
     "no colours": (named(ncl2=None), "ncl2", "required: ncl2"),
     "stages in version 2": (

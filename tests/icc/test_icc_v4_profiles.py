@@ -61,7 +61,7 @@ def test_counts(tag, value, message):
 # Not all of them, as each takes a process of its own.
 JUDGED = {
     **{name: GOOD[name] for name in GOOD if name[:-1] in ("printer ", "link ") or name[-1] == "2"},
-    **{name: BAD[name][0] for name in list(BAD)[::3]},
+    **{name: BAD[name][0] for name in list(BAD)[1::3]},
 }
 
 
