@@ -249,7 +249,7 @@ def _serve(folder: Path) -> None:
     else:
         with np.load(folder / "arrays.npz") as arrays:
             answer = _apply(request, arrays["pixels"])
-    np.savez(folder / "answer.npz", **answer)  # type: ignore[arg-type]
+    np.savez(folder / "answer.npz", **answer)
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ from brdfc.icc.types import NumberArray, Opaque, Pipeline, Tag, Utf8Array, XYZAr
 from brdfc.xml.profile import encoded, load_xml, to_xml
 
 TESTS = Path(__file__).parents[1]
-sys.path += [str(TESTS / "icc"), str(TESTS / "calc")]
+sys.path += [str(TESTS), str(TESTS / "icc"), str(TESTS / "calc")]
 
 from calc_elements import FORMULAS, LINE, SAMPLED, SEGMENTED, SHARED, TABLES  # noqa: E402
 from calc_programs import random_program  # noqa: E402
