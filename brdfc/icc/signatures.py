@@ -51,7 +51,9 @@ DEVICE_CLASSES: dict[str, DeviceClass] = {
     "mlnk": DeviceClass("multiplex link", ((("M2A0",),), _NAMES)),
     "scnr": DeviceClass("input", ((*_TO_PCS, _MATRIX, _GRAY),), ((("A2B0",), _MATRIX, _GRAY),)),
     "mntr": DeviceClass(
-        "display", ((*_TO_PCS, _MATRIX, _GRAY),), ((("A2B0", "B2A0"), _MATRIX, _GRAY),)
+        "display",
+        ((*_TO_PCS, _MATRIX, _GRAY), (*_FROM_PCS, _MATRIX, _GRAY)),
+        ((("A2B0", "B2A0"), _MATRIX, _GRAY),),
     ),
     "prtr": DeviceClass(
         "output",
