@@ -20,8 +20,10 @@ from brdfc.cmm.connection import (
     component_names,
 )
 from brdfc.cmm.environment import environment_of
+from brdfc.cmm.intents import Intent
 from brdfc.cmm.link import Link
-from brdfc.cmm.stages import Intent, Kind, Stage, stage_of
+from brdfc.cmm.roles import Kind
+from brdfc.cmm.stages import Stage, stage_of
 from brdfc.engine import runs
 from brdfc.engine.choice import Engine, engine_named
 from brdfc.engine.tables import Interpolation, interpolation_named
@@ -166,7 +168,7 @@ def _samples(first: Stage) -> tuple[tuple[str, ...], tuple[Described, ...]]:
         return names, described
     if first.gives.kind is not Kind.MULTIPLEX:
         described = ()
-    space = first.takes.device if first.takes.kind is Kind.DEVICE else profile.header.pcs
+    space = first.takes.device if first.takes.kind is Kind.DEVICE else b"XYZ "
     return component_names(space, count), described
 
 

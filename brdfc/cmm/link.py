@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from brdfc.cmm.connection import defaults
 from brdfc.cmm.environment import environment_of
-from brdfc.cmm.stages import Space, Stage
+from brdfc.cmm.roles import Space
+from brdfc.cmm.stages import Stage
 from brdfc.engine import runs
 from brdfc.engine.choice import Engine
 from brdfc.engine.kernels import Values

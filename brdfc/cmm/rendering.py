@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from brdfc.cmm.connection import custom_conversion
 from brdfc.cmm.link import Link
-from brdfc.cmm.stages import Kind
+from brdfc.cmm.roles import Kind
 from brdfc.colour.adaptation import adaptation_matrix, adaptation_transform
 from brdfc.colour.conditions import (
     ViewingConditions,

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import Enum, IntEnum
-from typing import NamedTuple
 
 from brdfc.calc.program import Element, OpaqueElement
 from brdfc.cmm.connection import Triple, from_lab, named_space, scaling, to_lab
 from brdfc.cmm.device import lut_elements, matrix_shaper
+from brdfc.cmm.intents import TRIED, Intent, adjustment, inverse_scaling
+from brdfc.cmm.roles import FROM_DEVICE, IDENTIFY, TO_DEVICE, Kind, Role, Space, role_of, spaces
 from brdfc.cmm.transforms import (
     Transform,
     Variables,
@@ -24,39 +24,9 @@ from brdfc.cmm.transforms import (
 )
 from brdfc.engine.elements import changes_nothing
 from brdfc.icc.profile import Profile
-from brdfc.icc.signatures import NO_SPACE
-from brdfc.icc.types import Pipeline, XYZArray
+from brdfc.icc.types import Pipeline
 from brdfc.profiles.conditions import profile_white
 from brdfc.source.errors import LinkError
-
-
-class Intent(IntEnum):
-    """Rendering intents, by the number in the names of tags."""
-
-    PERCEPTUAL = 0
-    RELATIVE = 1
-    SATURATION = 2
-    ABSOLUTE = 3
-
-
-class Kind(Enum):
-    """What the values between profiles are."""
-
-    DEVICE = "device values"
-    MULTIPLEX = "multiplex channels"
-    COLOURS = "colours"
-    REFLECTANCES = "reflectances"
-
-
-class Space(NamedTuple):
-    """device: which, of device values."""
-
-    kind: Kind
-    device: bytes = NO_SPACE
-
-    def __str__(self) -> str:
-        named = self.kind is Kind.DEVICE
-        return f"{self.kind.value} of {named_space(self.device)}" if named else self.kind.value
 
 
 @dataclass(frozen=True)
@@ -74,36 +44,6 @@ class Stage:
     variables: Variables = ()
 
 
-class Role(NamedTuple):
-    """families: how the names of the tags begin, in the order they are tried; others: those that
-    are taken only if they are asked for."""
-
-    takes: Kind
-    gives: Kind
-    families: tuple[str, ...]
-    others: tuple[str, ...] = ()
-
-
-_IDENTIFY = Role(Kind.DEVICE, Kind.MULTIPLEX, ("A2M",))
-_VISUALIZE = Role(Kind.MULTIPLEX, Kind.COLOURS, ("M2B",), ("M2S",))
-_LINK_BACK = Role(Kind.MULTIPLEX, Kind.DEVICE, ("M2A",))
-_FROM_DEVICE = Role(Kind.DEVICE, Kind.COLOURS, ("D2B", "A2B"), ("bAB", "bDB"))
-_TO_DEVICE = Role(Kind.COLOURS, Kind.DEVICE, ("B2D", "B2A"))
-_ABSTRACT = Role(Kind.COLOURS, Kind.COLOURS, ("D2B", "A2B"))
-_DEVICE_LINK = Role(Kind.DEVICE, Kind.DEVICE, ("A2B",))
-
-_ONLY = {"mid ": _IDENTIFY, "mvis": _VISUALIZE, "mlnk": _LINK_BACK}
-_ONLY |= {"abst": _ABSTRACT, "link": _DEVICE_LINK}
-"""The classes that can be used in one way alone."""
-_NEVER = {"nmcl": "names colours", "cenc": "names an encoding"}
-
-_ORDER: dict[Intent | None, tuple[int, ...]] = {
-    Intent.PERCEPTUAL: (0, 1, 3),
-    Intent.RELATIVE: (1, 3, 0),
-    Intent.SATURATION: (2, 0, 1, 3),
-    Intent.ABSOLUTE: (3, 1, 0),
-}
-"""The tags that are tried for an intent, by their numbers."""
 _USUAL = {Kind.MULTIPLEX: Intent.PERCEPTUAL}
 """What is meant where no intent is asked for: of channels the tag 0, as the ICC's engine takes it
 whatever it is asked for; of devices colours relative to the medium."""
@@ -122,10 +62,10 @@ def stage_of(
     that is asked for. Raises LinkError where the profile cannot stand here, or its program cannot
     be proven safe.
     """
-    role = _role(profile, given, following)
-    takes, gives = _spaces(profile, role)
+    role = role_of(profile, given, following)
+    takes, gives = spaces(profile, role)
     if given is not None and given != takes:
-        order = "give the MID first, then the MVIS" if role is _IDENTIFY else None
+        order = "give the MID first, then the MVIS" if role is IDENTIFY else None
         raise LinkError(f"{given} do not go into a profile that takes {takes}", hint=order)
     wanted = intent
     if wanted is None:
@@ -142,42 +82,6 @@ def stage_of(
     own = tag.elements if isinstance(tag, Pipeline) else ()
     variables = variables_of(profile, found, own)
     return Stage(profile, found, takes, gives, tag.inputs, elements, variables)
-
-
-def _role(profile: Profile, given: Space | None, following: Profile | None) -> Role:
-    kind = profile.header.device_class
-    if kind in _NEVER:
-        raise LinkError(f"a profile of class '{kind}' {_NEVER[kind]}: it has no place in a chain")
-    if given is not None and given.kind is Kind.MULTIPLEX:
-        if kind not in ("mvis", "mlnk") and not _has(profile, "M2B"):
-            raise LinkError(
-                f"after a MID the next profile must be an MVIS, this is of class '{kind}'",
-                hint="an MVIS (class 'mvis') or an MLNK ('mlnk') takes multiplex channels",
-            )
-        return _ONLY.get(kind, _VISUALIZE)
-    if kind in _ONLY:
-        return _ONLY[kind]
-    if given is not None and given.kind is Kind.COLOURS:
-        return _TO_DEVICE
-    # An input profile with multiplex channels stands for a MID where channels are what is taken.
-    takes_channels = following is not None and (
-        following.header.device_class in ("mvis", "mlnk") or _has(following, "M2B")
-    )
-    return _IDENTIFY if takes_channels and _has(profile, "A2M") else _FROM_DEVICE
-
-
-def _has(profile: Profile, family: str) -> bool:
-    return any(f"{family}{n}" in profile.tags for n in "0123")
-
-
-def _spaces(profile: Profile, role: Role) -> tuple[Space, Space]:
-    header = profile.header
-    device = Space(Kind.DEVICE, header.device_space)
-    takes = device if role.takes is Kind.DEVICE else Space(role.takes)
-    gives = device if role.gives is Kind.DEVICE else Space(role.gives)
-    if role is _DEVICE_LINK:
-        gives = Space(Kind.DEVICE, header.pcs)
-    return takes, gives
 
 
 # --- which tag ------------------------------------------------------------------------------------
@@ -197,7 +101,7 @@ def _found(profile: Profile, role: Role, wanted: Intent) -> str | None:
 
 
 def _tried(role: Role, wanted: Intent) -> Iterator[str]:
-    for number in _ORDER[wanted]:
+    for number in TRIED[wanted]:
         for family in role.families:
             yield f"{family}{number}"
 
@@ -241,25 +145,25 @@ def _in_space(
             space = named_space(profile.header.pcs)
             raise LinkError(f"'{signature}' leads to {count} values of '{space}', not to X, Y, Z")
     to_black = not isinstance(tag, Pipeline) and profile.header.major_version < 4
-    adjustment = _adjustment(profile, wanted, Intent(int(signature[3])), to_black)
-    return _from_and_to_xyz(profile, inner, *sides, adjustment)
+    adjust = adjustment(profile, wanted, Intent(int(signature[3])), to_black)
+    return _from_and_to_xyz(profile, inner, *sides, adjust)
 
 
 def _shaped(profile: Profile, role: Role, takes: Space, gives: Space, wanted: Intent) -> Stage:
     """The stage of a profile that has tone curves, and a matrix where it has colours."""
-    inverse = role is _TO_DEVICE
-    shaper = matrix_shaper(profile, inverse) if inverse or role is _FROM_DEVICE else None
+    inverse = role is TO_DEVICE
+    shaper = matrix_shaper(profile, inverse) if inverse or role is FROM_DEVICE else None
     if shaper is None and takes.kind is not Kind.COLOURS and gives.kind is not Kind.COLOURS:
-        raise LinkError(f"the profile has no '{role.families[0]}{_ORDER[wanted][0]}' transform")
+        raise LinkError(f"the profile has no '{role.families[0]}{TRIED[wanted][0]}' transform")
     if shaper is None:
-        tags = [f"{family}{n}" for family in role.families for n in _ORDER[wanted]]
+        tags = [f"{family}{n}" for family in role.families for n in TRIED[wanted]]
         raise LinkError(
             f"the profile (class '{profile.header.device_class}') has no transform from "
             f"{takes} to {gives} that can be run",
             hint=f"one of {', '.join(dict.fromkeys(tags))} is needed",
         )
-    adjustment = _adjustment(profile, wanted, Intent.RELATIVE, to_black=True)
-    elements = _from_and_to_xyz(profile, shaper.elements, inverse, not inverse, adjustment)
+    adjust = adjustment(profile, wanted, Intent.RELATIVE, to_black=True)
+    elements = _from_and_to_xyz(profile, shaper.elements, inverse, not inverse, adjust)
     return Stage(profile, shaper.name, takes, gives, 3 if inverse else shaper.channels, elements)
 
 
@@ -268,59 +172,20 @@ def _from_and_to_xyz(
     inner: tuple[Element, ...],
     from_xyz: bool,
     to_xyz: bool,
-    adjustment: tuple[Triple, Triple] | None,
+    adjust: tuple[Triple, Triple] | None,
 ) -> tuple[Element, ...]:
     """Elements between X, Y, Z instead of the profile's own connection space, adjusted."""
     white, is_lab = profile_white(profile), profile.header.pcs == b"Lab "
     before: list[Element] = []
     after: list[Element] = []
     if from_xyz:
-        if adjustment:
-            before.append(_inverse(*adjustment))
+        if adjust:
+            before.append(inverse_scaling(*adjust))
         if is_lab:
             before.append(to_lab(white))
     if to_xyz:
         if is_lab:
             after.append(from_lab(white))
-        if adjustment:
-            after.append(scaling(*adjustment))
+        if adjust:
+            after.append(scaling(*adjust))
     return (*before, *inner, *after)
-
-
-def _inverse(factors: Triple, offsets: Triple) -> Element:
-    x, y, z = (1 / f for f in factors)
-    a, b, c = (-o / f for o, f in zip(offsets, factors, strict=True))
-    return scaling((x, y, z), (a, b, c))
-
-
-_BLACK: Triple = (0.00336, 0.0034731, 0.00287)
-"""X, Y, Z of the perceptual reference medium's black point (ICC.1:2022, 6.3.4.3)."""
-
-
-def _adjustment(
-    profile: Profile, wanted: Intent, found: Intent, to_black: bool
-) -> tuple[Triple, Triple] | None:
-    """Factors and offsets from the profile's X, Y, Z to those of an intent; None for none.
-
-    Absolute colours are those relative to the medium times its white. to_black: the profile's
-    perceptual colours reach down to black, where the reference medium's do not: those of tables
-    before version 4, and of tone curves.
-    """
-    white = profile_white(profile)
-    power = (wanted is Intent.ABSOLUTE) - (found is Intent.ABSOLUTE)
-    if power:
-        x, y, z = ((m / w) ** power for m, w in zip(_media_white(profile), white, strict=True))
-        return (x, y, z), (0.0, 0.0, 0.0)
-    if wanted is Intent.PERCEPTUAL and to_black and profile.header.device_class != "abst":
-        x, y, z = (1 - b / w for b, w in zip(_BLACK, white, strict=True))
-        return (x, y, z), _BLACK
-    return None
-
-
-def _media_white(profile: Profile) -> Triple:
-    tag = profile.tags.get("wtpt")
-    if not isinstance(tag, XYZArray) or len(tag.values) != 1 or not min(tag.values[0]) > 0:
-        raise LinkError(
-            "the profile states no white of its medium ('wtpt'), which absolute colours need"
-        )
-    return tag.values[0]

@@ -25,7 +25,7 @@ from brdfc.calc.samples import Storage
 from brdfc.cmm import reference
 from brdfc.cmm.connect import connect
 from brdfc.cmm.connection import NEEDS_SUBSET
-from brdfc.cmm.stages import Intent
+from brdfc.cmm.intents import Intent
 from brdfc.colour.conditions import viewing_conditions
 from brdfc.colour.difference import D50
 from brdfc.icc.curves import Curve, ParametricCurve
