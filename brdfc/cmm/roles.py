@@ -1,5 +1,5 @@
-"""What a profile does in a chain: from its device to the connection space or the other way round, by
-its class and what stands before it."""
+"""What a profile does in a chain, by its class and what stands before it: from its device to the
+connection space, or the other way round."""
 
 from __future__ import annotations
 
