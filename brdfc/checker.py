@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from brdfc.calc.curves import calculator_curves
 from brdfc.calc.portability import portability
 from brdfc.calc.price import operations, price
-from brdfc.calc.program import Program
+from brdfc.calc.program import Element, Program
 from brdfc.calc.verify import verify
 from brdfc.cmm import reference
 from brdfc.compiler import compile_model
@@ -150,8 +151,11 @@ def check_profile(path: str | Path) -> Iterator[Finding]:
     for signature, tag in profile.tags.items():
         if isinstance(tag, Pipeline):
             for index, element in enumerate(tag.elements):
+                where = f"{signature}, element {index}"
                 if isinstance(element, Program):
-                    yield from _program(element, f"{signature}, element {index}")
+                    yield from _program(element, where)
+                elif calculator_curves(element):
+                    yield _curves(element, where)
     named = [*describe(profile, "channel"), *describe(profile, "env")]
     for d in named:
         kind = f"variable ({d.signature})" if d.signature else "channel"
@@ -173,6 +177,16 @@ def _program(program: Program, where: str) -> Iterator[Finding]:
     )
     for remark in portability(program):
         yield Finding(WARNING, f"{where}: {remark}")
+
+
+def _curves(element: Element, where: str) -> Finding:
+    """Curves that are sampled from programs."""
+    try:
+        facts = verify(element, where)
+    except BrdfcError as error:
+        return Finding(ERROR, str(error))
+    read = " ".join(facts.variables) or "none"
+    return Finding(OK, f"{where}: curves proven safe to sample, variables {read}")
 
 
 def _reference_verdict(path: str | Path) -> Finding:

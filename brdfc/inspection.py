@@ -7,7 +7,8 @@ from pathlib import Path
 
 from brdfc.calc.binary import encode_element
 from brdfc.calc.census import census
-from brdfc.calc.curves import CurveSet
+from brdfc.calc.curves import CurveSet, calculator_curves
+from brdfc.calc.facts import Facts
 from brdfc.calc.price import operations, price
 from brdfc.calc.program import Element, Program
 from brdfc.calc.tables import LookupTable
@@ -46,8 +47,7 @@ def prove(profile: Profile, path: str) -> None:
     """Prove every program of a profile safe to run; ProgramError names the tag and operation."""
     for signature, pipeline in _pipelines(profile.tags):
         for index, element in enumerate(pipeline.elements):
-            if isinstance(element, Program):
-                verify(element, f"{path}, tag '{signature}', element {index}")
+            verify(element, f"{path}, tag '{signature}', element {index}")
 
 
 def inspect(path: str | Path, engine: bool = True) -> Inspection:
@@ -136,6 +136,9 @@ def _variables(profile: Profile, transforms: tuple[Transform, ...]) -> tuple[Var
         if part.calculator
         for signature in part.calculator.variables
     }
+    for facts in _sampled_programs(profile):
+        if isinstance(facts, Facts):
+            read |= dict.fromkeys(v for v in facts.variables if v not in ("true", "ndef"))
     found = []
     for signature in read:
         d = described.get(signature)
@@ -198,13 +201,27 @@ def _calculator(program: Program, where: str) -> Calculator:
     )
 
 
+def _sampled_programs(profile: Profile) -> Iterator[Facts | str]:
+    """What is proven of curve sets that are sampled from programs, or why they are refused."""
+    for signature, pipeline in _pipelines(profile.tags):
+        for index, element in enumerate(pipeline.elements):
+            if calculator_curves(element):
+                try:
+                    yield verify(element, f"tag '{signature}', element {index}")
+                except ProgramError as error:
+                    yield str(error)
+
+
 def _verdicts(
     profile: Profile, transforms: tuple[Transform, ...], path: str | Path | None
 ) -> dict[str, tuple[str, ...]]:
     calculators = [p.calculator for t in transforms for p in t.elements if p.calculator]
     verdicts = {
         "rules": tuple(map(str, validate(profile))),
-        "programs": tuple(c.refused for c in calculators if c.refused),
+        "programs": (
+            *(c.refused for c in calculators if c.refused),
+            *(refused for refused in _sampled_programs(profile) if isinstance(refused, str)),
+        ),
         "portability": tuple(remark for c in calculators for remark in c.remarks),
     }
     if path is not None and reference.available() and not verdicts["programs"]:

@@ -1,5 +1,5 @@
 """Elements as bytes, as a profile holds them: the calculator (`calc`) and the matrix (`matf`) here,
-curve sets and lookup tables in modules of their own.
+all others in modules of their own.
 
 Bytes are not trusted: every count and offset is checked against what is there before it is
 followed, and nesting has a limit, so that no input can exhaust stack or memory.
@@ -9,12 +9,15 @@ from __future__ import annotations
 
 import math
 import struct
+from collections.abc import Callable
 
+from brdfc.calc.appearance import AppearanceTransform, decode_appearance, encode_appearance
 from brdfc.calc.curves import CurveSet, decode_curves, encode_curves
 from brdfc.calc.function import decode_block, decode_function, encode_block, encode_function
 from brdfc.calc.places import ENTRY, decode_parts, decode_places, encode_parts
 from brdfc.calc.program import MAX_NESTING, Element, Matrix, OpaqueElement, Program
 from brdfc.calc.tables import LookupTable, decode_table, encode_table
+from brdfc.calc.tints import TintArray, decode_tint, encode_tint
 from brdfc.source.errors import ProgramError
 
 __all__ = ["decode_block", "decode_element", "encode_block", "encode_element"]
@@ -31,9 +34,13 @@ def encode_element(element: Element) -> bytes:
         if isinstance(element, Matrix):
             return _encode_matrix(element)
         if isinstance(element, CurveSet):
-            return encode_curves(element)
+            return encode_curves(element, encode_element)
         if isinstance(element, LookupTable):
             return encode_table(element)
+        if isinstance(element, TintArray):
+            return encode_tint(element)
+        if isinstance(element, AppearanceTransform):
+            return encode_appearance(element)
     except (struct.error, OverflowError) as error:
         raise ProgramError(f"an element cannot be encoded: {error}") from error
     if isinstance(element, OpaqueElement):
@@ -70,14 +77,16 @@ def decode_element(data: bytes, where: str, depth: int = 0) -> Element:
     if len(data) < 12:
         raise ProgramError(f"an element needs 12 bytes, {len(data)} are left", where=where)
     signature, _, inputs, outputs = struct.unpack(">4sIHH", data[:12])
+
+    def decode(part: bytes, name: str) -> Element:
+        return decode_element(part, name, depth + 1)
+
     if signature == b"calc":
-        return _decode_calculator(data, inputs, outputs, where, depth)
-    if signature == b"matf":
-        return _decode_matrix(data, inputs, outputs, where)
+        return _decode_calculator(data, inputs, outputs, where, decode)
     if signature == b"cvst":
-        return decode_curves(data, inputs, outputs, where)
-    if signature in (b"clut", b"xclt"):
-        return decode_table(data, inputs, outputs, where)
+        return decode_curves(data, inputs, outputs, where, decode)
+    if signature in _DECODERS:
+        return _DECODERS[signature](data, inputs, outputs, where)
     return OpaqueElement(signature.decode("latin-1"), inputs, outputs, bytes(data))
 
 
@@ -91,7 +100,20 @@ def _decode_matrix(data: bytes, inputs: int, outputs: int, where: str) -> Matrix
     return Matrix(inputs, outputs, numbers[: inputs * outputs], numbers[inputs * outputs :])
 
 
-def _decode_calculator(data: bytes, inputs: int, outputs: int, where: str, depth: int) -> Program:
+_DECODERS: dict[bytes, Callable[[bytes, int, int, str], Element]] = {
+    b"matf": _decode_matrix,
+    b"clut": decode_table,
+    b"xclt": decode_table,
+    b"tint": decode_tint,
+    b"XtoJ": decode_appearance,
+    b"JtoX": decode_appearance,
+}
+"""Elements without others inside."""
+
+
+def _decode_calculator(
+    data: bytes, inputs: int, outputs: int, where: str, decode: Callable[[bytes, str], Element]
+) -> Program:
     if len(data) < 24:
         raise ProgramError("the calculator has no main function", where=where)
     (count,) = struct.unpack_from(">I", data, 12)
@@ -99,10 +121,6 @@ def _decode_calculator(data: bytes, inputs: int, outputs: int, where: str, depth
         raise ProgramError(f"{count} sub-elements are claimed, more than fit", where=where)
     (start, size), *places = decode_places(data, 16, count + 1, where)
     body = decode_function(data[start : start + size], f"{where}, main function")
-
-    def decode(part: bytes, name: str) -> Element:
-        return decode_element(part, name, depth + 1)
-
     # Entries at the same place share one element, as they do for the reference.
     elements = decode_parts(data, places, decode, "sub-element", where)
     return Program(inputs, outputs, body, elements)

@@ -1,17 +1,24 @@
 """Curve sets (`cvst`): one curve a channel, and their bytes.
 
-A curve is sampled at equal steps (`sngf`), or put together from segments (`curf`), each a formula
-(`parf`) or sampled at equal steps (`samf`).
+A curve is sampled at equal steps (`sngf`), put together from segments (`curf`), each a formula
+(`parf`) or sampled at equal steps (`samf`), or sampled from a calculator (calculator_curves.py).
 """
 
 from __future__ import annotations
 
 import math
 import struct
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
+from brdfc.calc.calculator_curves import (
+    CalculatorCurve,
+    decode_calculator_curve,
+    encode_calculator_curve,
+)
 from brdfc.calc.places import ENTRY, decode_parts, decode_places, encode_parts
+from brdfc.calc.program import Element
 from brdfc.calc.samples import Samples, Storage
 from brdfc.source.errors import ProgramError
 
@@ -59,14 +66,7 @@ class SampledCurve:
     extend: bool = False
 
 
-@dataclass(frozen=True)
-class OpaqueCurve:
-    """`clcf`, a curve sampled from a calculator: carried but not run; data are its bytes."""
-
-    data: bytes
-
-
-Curve = SegmentedCurve | SampledCurve | OpaqueCurve
+Curve = SegmentedCurve | SampledCurve | CalculatorCurve
 
 
 @dataclass(frozen=True)
@@ -88,17 +88,32 @@ class CurveSet:
         return "cvst"
 
 
-def encode_curves(curves: CurveSet) -> bytes:
-    """The element from its own signature on."""
+def calculator_curves(element: Element) -> dict[int, CalculatorCurve]:
+    """The curves of an element that are sampled from calculators, each once, by its first place."""
+    curves = element.curves if isinstance(element, CurveSet) else ()
+    places = {id(curve): place for place, curve in reversed(list(enumerate(curves)))}
+    return {
+        place: curve
+        for place, curve in enumerate(curves)
+        if isinstance(curve, CalculatorCurve) and places[id(curve)] == place
+    }
+
+
+def encode_curves(curves: CurveSet, encode: Callable[[Element], bytes]) -> bytes:
+    """The element from its own signature on. encode: the bytes of a curve's calculator."""
     count = len(curves.curves)
-    places, data = encode_parts(curves.curves, _encode_curve, 12 + ENTRY * count)
+
+    def encode_curve(curve: Curve) -> bytes:
+        return _encode_curve(curve, encode)
+
+    places, data = encode_parts(curves.curves, encode_curve, 12 + ENTRY * count)
     return struct.pack(">4sIHH", b"cvst", 0, count, count) + places + data
 
 
-def _encode_curve(curve: Curve) -> bytes:
+def _encode_curve(curve: Curve, encode: Callable[[Element], bytes]) -> bytes:
     where = "a curve"
-    if isinstance(curve, OpaqueCurve):
-        return curve.data
+    if isinstance(curve, CalculatorCurve):
+        return encode_calculator_curve(curve, encode)
     if isinstance(curve, SampledCurve):
         _check_sampled(curve, where)
         storage = curve.samples.storage
@@ -117,24 +132,31 @@ def _encode_segment(segment: Segment) -> bytes:
     return head + struct.pack(f">{len(segment.parameters)}f", *segment.parameters)
 
 
-def decode_curves(data: bytes, inputs: int, outputs: int, where: str) -> CurveSet:
-    """The curve set that `data` begins with, its header of 12 bytes included."""
+def decode_curves(
+    data: bytes, inputs: int, outputs: int, where: str, decode: Callable[[bytes, str], Element]
+) -> CurveSet:
+    """The curve set that `data` begins with, its header of 12 bytes included. decode: the element
+    that a curve is sampled from, of its bytes and its name for errors."""
     if inputs != outputs:
         raise ProgramError(f"a curve set of {inputs} inputs and {outputs} outputs", where=where)
     if 12 + ENTRY * inputs > len(data):
         raise ProgramError(f"{inputs} curves are claimed, more than fit", where=where)
     places = decode_places(data, 12, inputs, where)
-    return CurveSet(decode_parts(data, places, _decode_curve, "curve", where))
+
+    def decode_curve(part: bytes, name: str) -> Curve:
+        return _decode_curve(part, name, decode)
+
+    return CurveSet(decode_parts(data, places, decode_curve, "curve", where))
 
 
-def _decode_curve(data: bytes, where: str) -> Curve:
+def _decode_curve(data: bytes, where: str, decode: Callable[[bytes, str], Element]) -> Curve:
     kind = data[:4]
     if kind == b"sngf":
         return _decode_sampled(data, where)
     if kind == b"curf":
         return _decode_segmented(data, where)
     if kind == b"clcf":
-        return OpaqueCurve(bytes(data))
+        return decode_calculator_curve(data, where, decode)
     raise ProgramError(f"no curve has the signature {kind!r}", where=where)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from brdfc.calc.curves import calculator_curves
 from brdfc.calc.price import operations
 from brdfc.calc.program import Element, Program
 from brdfc.calc.text import disassemble
@@ -11,6 +12,8 @@ from brdfc.calc.text import disassemble
 
 def listing(element: Element, name: str) -> Iterator[str]:
     """One text a calculator: a comment that names it, then its main function."""
+    for place, curve in calculator_curves(element).items():
+        yield from listing(curve.calculator, f"{name}, curve {place}")
     if not isinstance(element, Program):
         return
     yield (

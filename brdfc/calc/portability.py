@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from brdfc.calc.curves import calculator_curves
 from brdfc.calc.program import Block, If, Op, Program, encoded_length, heads
 
 _UNSETTLED = ("mod", "solv", "trnc", "rond", "rnum")
@@ -17,6 +18,9 @@ def portability(program: Program, where: str = "") -> list[str]:
     for index, element in sorted(inner.values(), key=lambda pair: pair[0]):
         if isinstance(element, Program):
             findings += portability(element, f"{where}sub-element {index}, ")
+        for place, curve in calculator_curves(element).items():
+            inside = f"{where}sub-element {index}, curve {place}, "
+            findings += portability(curve.calculator, inside)
     return findings
 
 

@@ -11,7 +11,17 @@ from brdfc.calc.prices import prices
 from brdfc.calc.program import Block, Element, If, Matrix, Op, Program, encoded_length
 from brdfc.calc.tables import LookupTable
 
-_KINDS = {"cvst": "curv", "matf": "mtx", "clut": "clut", "xclt": "clut", "calc": "calc"}
+_KINDS = {
+    "cvst": "curv",
+    "matf": "mtx",
+    "clut": "clut",
+    "xclt": "clut",
+    "tint": "tint",
+    "XtoJ": "tJab",
+    "JtoX": "fJab",
+    "calc": "calc",
+}
+"""The operator that an element is priced as, whatever calls it."""
 
 
 def operations(program: Program) -> int:
@@ -129,7 +139,7 @@ def components(op: Op) -> int:
 
 
 def _call(op: Op, elements: Sequence[Element]) -> Step:
-    """A call of an element: curves, entries of a matrix, or weights and values of a table's
+    """A call of an element: channels, entries of a matrix, or weights and values of a table's
     corners are its components; a calculator runs its function."""
     if op.first >= len(elements):
         return Step(op.name)

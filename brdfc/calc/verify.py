@@ -1,16 +1,17 @@
-"""What can be proven of a program before it runs.
+"""What can be proven of an element before it runs.
 
-Stack depth on every path, reads of temporaries and writes of outputs on every path, channels in
-range, sub-elements present and of the right kind, nesting, and how much work a pixel can take. A
-program that fails is refused with the index of the operation, counted as the file does.
+Of a program: stack depth on every path, reads of temporaries and writes of outputs on every path,
+channels in range, sub-elements present and of the right kind, nesting, and how much work a pixel
+can take. A program that fails is refused with the index of the operation, counted as the file does.
+Curves that are sampled from programs are as safe as those; other elements always are.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import reduce
-from operator import and_
 
+from brdfc.calc.curves import CurveSet, calculator_curves
+from brdfc.calc.facts import Facts, State, joined
 from brdfc.calc.operators import Operand
 from brdfc.calc.portability import portability
 from brdfc.calc.program import (
@@ -44,46 +45,6 @@ _KIND_OF_ELEMENT = {
 }
 
 
-@dataclass(frozen=True)
-class Facts:
-    """What verification found.
-
-    stack: the greatest depth; temporaries: how many are in use; variables: signatures read, those
-    of called calculators included. held: values a pixel keeps at once (stack, temporaries,
-    channels), and work: values popped and pushed on the dearest path, both with everything that is
-    called. nesting: how deep blocks and calls stand in each other.
-    """
-
-    stack: int
-    temporaries: int
-    variables: tuple[str, ...]
-    held: int
-    work: int
-    nesting: int
-
-
-@dataclass
-class _State:
-    """What holds on every path to a point: depth (least and greatest), work so far (greatest),
-    and bit sets of the temporaries and outputs that have been written."""
-
-    least: int = 0
-    greatest: int = 0
-    work: int = 0
-    temporaries: int = 0
-    outputs: int = 0
-
-
-def _joined(paths: list[_State]) -> _State:
-    return _State(
-        min(path.least for path in paths),
-        max(path.greatest for path in paths),
-        max(path.work for path in paths),
-        reduce(and_, (path.temporaries for path in paths)),
-        reduce(and_, (path.outputs for path in paths)),
-    )
-
-
 @dataclass
 class _Checker:
     program: Program
@@ -91,7 +52,7 @@ class _Checker:
     level: int
     """How many blocks and calls stand around the instruction being checked."""
     known: dict[int, Facts]
-    """Sub-elements proven already, by identity: a shared one is proven once."""
+    """Programs proven already, by identity: a shared one is proven once."""
     index: int = 0
     deepest: int = 0
     peak: int = 0
@@ -101,7 +62,7 @@ class _Checker:
 
     def run(self) -> Facts:
         start = self.deepest = self.level
-        state = _State()
+        state = State()
         self.block(self.program.body, state)
         missing = ((1 << self.program.outputs) - 1) & ~state.outputs
         if missing:
@@ -127,7 +88,7 @@ class _Checker:
         if self.deepest > MAX_NESTING:
             raise self.fail(f"blocks and calculators nest deeper than {MAX_NESTING}")
 
-    def block(self, block: Block, state: _State) -> None:
+    def block(self, block: Block, state: State) -> None:
         for instruction in block:
             if isinstance(instruction, Op):
                 self.op(instruction, state)
@@ -135,7 +96,7 @@ class _Checker:
             else:
                 self.branches(instruction, state)
 
-    def branches(self, instruction: If | Select, state: _State) -> None:
+    def branches(self, instruction: If | Select, state: State) -> None:
         self.take(state, 1, 0, "if" if isinstance(instruction, If) else "sel")
         self.enter(1)
         bodies = instruction.bodies
@@ -146,9 +107,9 @@ class _Checker:
         for body, path in zip(bodies, paths, strict=False):
             self.block(body, path)
         self.level -= 1
-        vars(state).update(vars(_joined(paths)))
+        vars(state).update(vars(joined(paths)))
 
-    def op(self, op: Op, state: _State) -> None:
+    def op(self, op: Op, state: State) -> None:
         operator = op.operator
         if operator.operand is Operand.ELEMENT:
             element = self.element(op)
@@ -167,7 +128,7 @@ class _Checker:
         popped, pushed = operator.effect(op.first, op.second)
         self.take(state, popped, pushed, op.name)
 
-    def span(self, op: Op, state: _State) -> None:
+    def span(self, op: Op, state: State) -> None:
         bits = ((1 << op.second) - 1) << op.first
         end = op.first + op.second
         limit = {"in": self.program.inputs, "out": self.program.outputs}.get(op.name, 65536)
@@ -183,7 +144,7 @@ class _Checker:
             missing = _lowest(bits & ~state.temporaries)
             raise self.fail(f"temporary {missing} is read, and on some path nothing was written")
 
-    def take(self, state: _State, popped: int, pushed: int, name: str) -> None:
+    def take(self, state: State, popped: int, pushed: int, name: str) -> None:
         if state.least < popped:
             raise self.fail(f"'{name}' needs {popped} values, {state.least} are on the stack")
         state.least += pushed - popped
@@ -209,26 +170,51 @@ class _Checker:
         return element
 
     def call(self, element: Element, op: Op) -> int:
-        """The work a call takes; a calculator is proven first."""
-        if isinstance(element, LookupTable):  # the corners of a cell, each with its weight
-            return (element.inputs + element.outputs) << element.inputs
-        if not isinstance(element, Program):
-            return element.inputs * element.outputs
+        """The work a call takes; what it runs is proven first."""
+        if not isinstance(element, Program) and not calculator_curves(element):
+            return _work(element)
         self.enter(1)
-        if id(element) not in self.known:
-            where = f"{self.where}, sub-element {op.first}"
-            self.known[id(element)] = _Checker(element, where, self.level + 1, self.known).run()
-        facts = self.known[id(element)]
+        where = f"{self.where}, sub-element {op.first}"
+        facts = _facts(element, where, self.level + 1, self.known)
         self.enter(1 + facts.nesting)
         self.held_by_called = max(self.held_by_called, facts.held)
         self.variables.update(facts.variables)
         return facts.work
 
 
+def _facts(element: Element, where: str, level: int, known: dict[int, Facts]) -> Facts:
+    """What is proven of an element that stands in so many blocks and calls."""
+    if isinstance(element, Program):
+        if id(element) not in known:
+            known[id(element)] = _Checker(element, where, level, known).run()
+        return known[id(element)]
+    held, work, nesting = element.inputs + element.outputs, _work(element), 0
+    variables: set[str] = set()
+    for index, curve in calculator_curves(element).items():
+        facts = _facts(curve.calculator, f"{where}, curve {index}", level + 1, known)
+        held, nesting = max(held, facts.held), max(nesting, 1 + facts.nesting)
+        variables.update(facts.variables)
+        work += curve.size * facts.work
+        if work > WORK_LIMIT:
+            raise ProgramError(
+                f"the curve is sampled {curve.size:,} times, and a sample may take {facts.work:,} "
+                f"steps; {WORK_LIMIT:,} is the limit",
+                where=f"{where}, curve {index}",
+            )
+    return Facts(0, 0, tuple(sorted(variables)), held, work, nesting)
+
+
+def _work(element: Element) -> int:
+    """Of an element that runs no program, or of a curve set without its programs."""
+    if isinstance(element, LookupTable):  # the corners of a cell, each with its weight
+        return (element.inputs + element.outputs) << element.inputs
+    return element.inputs if isinstance(element, CurveSet) else element.inputs * element.outputs
+
+
 def _lowest(bits: int) -> int:
     return (bits & -bits).bit_length() - 1
 
 
-def verify(program: Program, where: str = "calculator") -> Facts:
-    """Prove a program safe to run, or raise ProgramError with the index of the operation."""
-    return _Checker(program, where, level=0, known={}).run()
+def verify(element: Element, where: str = "calculator") -> Facts:
+    """Prove an element safe to run, or raise ProgramError with the index of the operation."""
+    return _facts(element, where, level=0, known={})

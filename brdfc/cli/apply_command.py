@@ -12,6 +12,7 @@ from brdfc.cli.options import (
     extrapolate_option,
     geometry_option,
     image_progress,
+    interpolation_option,
     pairs,
     warn_of_defaults,
     warn_of_display,
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
 )
 @geometry_option
 @engine_option
+@interpolation_option
 @image_options
 def command(
     files: tuple[str, ...],

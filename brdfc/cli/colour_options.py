@@ -159,6 +159,7 @@ def rendered(
     transform: str | None,
     extrapolate: bool = False,
     engine: str = "auto",
+    interpolation: str = "linear",
 ) -> Rendering:
     """Profiles linked, and rendered as the rendering options say."""
     from brdfc.cmm.rendering import Target, rendering, seen_conditions, target
@@ -169,6 +170,6 @@ def rendered(
     seen = illuminant is not None or observer is not None
     if transform is None and (seen or wanted is Target.SPECTRUM):
         transform = "M2S0" if len(profiles) > 1 else "D2B1"
-    link = connected(profiles, environment, transform, extrapolate, engine)
+    link = connected(profiles, environment, transform, extrapolate, engine, interpolation)
     conditions = seen_conditions(link, illuminant, observer) if seen else None
     return rendering(link, wanted, adapt, conditions, adaptation or "bradford")

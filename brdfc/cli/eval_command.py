@@ -9,6 +9,7 @@ from brdfc.cli.colour_options import rendered, rendering_options
 from brdfc.cli.options import (
     environment_option,
     extrapolate_option,
+    interpolation_option,
     warn_of_defaults,
     warn_of_display,
 )
@@ -19,6 +20,7 @@ from brdfc.cli.options import (
 @environment_option
 @extrapolate_option
 @rendering_options
+@interpolation_option
 @click.option(
     "--pixel",
     "pixels",

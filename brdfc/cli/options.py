@@ -123,12 +123,23 @@ def engine_option(function: Callable[..., Any]) -> Callable[..., Any]:
     )(function)
 
 
+def interpolation_option(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The --interpolation option of commands that run profiles."""
+    return click.option(
+        "--interpolation",
+        type=click.Choice(["linear", "tetrahedral"]),
+        default="linear",
+        help="Of lookup tables of three channels; all others are linear. Default: linear.",
+    )(function)
+
+
 def connected(
     profiles: Sequence[str | Profile],
     environment: Iterable[str],
     transform: str | None = None,
     extrapolate: bool = False,
     engine: str = "auto",
+    interpolation: str = "linear",
 ) -> Link:
     """Profiles linked, variables read in the units that the last declares.
 
@@ -155,7 +166,14 @@ def connected(
         # A foreign profile does not say what its variables are; the unit the user writes does.
         declared = types.get(name) or TYPES["angle" if text[-3:] in ("deg", "rad") else "number"]
         values[name] = parse_value(text, declared, name)[0]
-    return connect(*loaded, env=values, transform=transform, extrapolate=extrapolate, engine=engine)
+    return connect(
+        *loaded,
+        env=values,
+        transform=transform,
+        extrapolate=extrapolate,
+        engine=engine,
+        interpolation=interpolation,
+    )
 
 
 def warn_of_display(chosen: Rendering) -> None:

@@ -25,6 +25,7 @@ from brdfc.cmm.transforms import (
 )
 from brdfc.engine import runs
 from brdfc.engine.choice import Engine, engine_named
+from brdfc.engine.tables import Interpolation, interpolation_named
 from brdfc.engine.trace import Chain, Route
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import Dictionary, NumberArray, Utf8Array
@@ -46,7 +47,7 @@ class Link:
     their default. environment: variables by signature, see engine.interpreter.run. described: what
     the first says of its channels. samples: the names of an image's samples, where the profile was
     compiled for one and takes only some of them. chain: the elements of the profiles' transforms,
-    and the route between them. engine, threads: how it is run, see engine.runs.
+    and the route between them. engine, threads, interpolation: how it is run, see engine.runs.
     """
 
     channels: tuple[str, ...]
@@ -59,6 +60,7 @@ class Link:
     samples: tuple[str, ...] = ()
     engine: Engine = Engine.AUTO
     threads: int | None = None
+    interpolation: Interpolation = Interpolation.LINEAR
 
     @property
     def inputs(self) -> int:
@@ -85,6 +87,7 @@ class Link:
             engine=self.engine,
             threads=self.threads,
             total=total,
+            interpolation=self.interpolation,
         )
 
     def together(
@@ -104,6 +107,7 @@ class Link:
             engine=self.engine,
             threads=self.threads,
             total=total,
+            interpolation=self.interpolation,
         )
         return results
 
@@ -128,6 +132,7 @@ class Link:
             list(results),
             engine=self.engine,
             threads=self.threads,
+            interpolation=self.interpolation,
         )
         return results.reshape(*shape, *results.shape[1:])
 
@@ -162,6 +167,7 @@ def connect(
     extrapolate: bool = False,
     engine: Engine | str = Engine.AUTO,
     threads: int | None = None,
+    interpolation: Interpolation | str = Interpolation.LINEAR,
 ) -> Link:
     """Connect a MID to an MVIS, or make ready a single profile of device values.
 
@@ -169,7 +175,8 @@ def connect(
     angles. transform: the tag of the last profile to use: "M2B0" (the usual one) or "M2S0" of an
     MVIS, "A2B1" or "bAB0" of a profile of device values. extrapolate: take variables outside the
     ranges that the profile states too. engine: what runs it, a choice.Engine or its name. threads:
-    as many as there are processors where None.
+    as many as there are processors where None. interpolation: of lookup tables of three inputs, a
+    tables.Interpolation or its name; others are always linear.
     Raises ProfileError for what is no profile, LinkError for profiles that do not connect,
     ValueGivenError for variables that do not exist or are outside their range.
     """
@@ -183,7 +190,12 @@ def connect(
             f"{len(loaded)} profiles do not connect",
             hint="give a MID and an MVIS, or one profile of device values",
         )
-    return replace(link, engine=engine_named(engine), threads=threads)
+    return replace(
+        link,
+        engine=engine_named(engine),
+        threads=threads,
+        interpolation=interpolation_named(interpolation),
+    )
 
 
 def _pair(

@@ -74,14 +74,18 @@ def chain(
     runs: Sequence[Mapping[str, float]] = ({},),
     repeat: int = 1,
     encoded: bool = True,
+    tetrahedral: bool = False,
 ) -> ReferenceRun:
     """As apply, through any profiles that lead to XYZ. encoded: what comes out is PCS-encoded: the
-    last profile's connection space, and not the device values of a profile of XYZ."""
+    last profile's connection space, and not the device values of a profile of XYZ. tetrahedral:
+    how it interpolates tables of three inputs outside processing elements; it takes those inside
+    for linear always."""
     request = {
         "task": "apply",
         "profiles": [str(path) for path in profiles],
         "runs": [dict(run) for run in runs],
         "repeat": repeat,
+        "interpolation": int(tetrahedral),
     }
     answer = _ask(request, {"pixels": np.ascontiguousarray(pixels, dtype=np.float32)})
     if "status" in answer:
@@ -178,7 +182,15 @@ def _apply(request: dict[str, Any], pixels: NDArray[np.float32]) -> dict[str, An
         variables = _Variables(count, signatures, values)
         for path in request["profiles"]:
             status = library.IccCmmAttachProfileFile(
-                handle, path.encode(), 0, 0, None, 0, 0, 0, ctypes.byref(variables)
+                handle,
+                path.encode(),
+                0,
+                request["interpolation"],
+                None,
+                0,
+                0,
+                0,
+                ctypes.byref(variables),
             )
             if status:
                 return {"status": status}

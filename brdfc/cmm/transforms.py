@@ -7,7 +7,6 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from brdfc.calc.program import Program
 from brdfc.calc.verify import verify
 from brdfc.engine.runs import run
 from brdfc.icc.profile import Profile
@@ -89,9 +88,8 @@ def transform_variables(
     described = {d.signature: d for d in describe(profile, "env")}
     signatures: dict[str, None] = {}
     for element in pipeline(profile, transform).elements:
-        if isinstance(element, Program):
-            try:
-                signatures |= dict.fromkeys(verify(element).variables)
-            except ProgramError as error:
-                raise LinkError(f"the profile's program is refused: {error}") from error
+        try:
+            signatures |= dict.fromkeys(verify(element).variables)
+        except ProgramError as error:
+            raise LinkError(f"the profile's program is refused: {error}") from error
     return tuple((s, described.get(s)) for s in signatures if s not in ("true", "ndef"))

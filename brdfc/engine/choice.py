@@ -50,7 +50,9 @@ def _counts(straight: Straight) -> tuple[int, int]:
 
 
 def can_be_compiled(straight: Straight) -> bool:
-    """Whether machine code is made of it at all."""
+    """Whether machine code is made of it at all: not of chains with curves or tables."""
+    if any(step.function is not None for step in straight.steps):
+        return False
     steps, functions = _counts(straight)
     heavy = steps + LIKE_STEPS * functions > MOST_COMPILED
     return not heavy and straight.registers <= MOST_REGISTERS

@@ -1,51 +1,22 @@
-"""Curve sets: sampled curves and segmented ones, computed as the reference engine computes them."""
+"""Curves: sampled ones and segmented ones, computed as the reference engine computes them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfc.calc.curves import (
-    Curve,
-    CurveSet,
-    FormulaSegment,
-    OpaqueCurve,
-    SampledCurve,
-    SampledSegment,
-    SegmentedCurve,
-)
+from brdfc.calc.curves import FormulaSegment, SampledCurve, SampledSegment, SegmentedCurve
+from brdfc.engine.calculator_curves import cell, line
 from brdfc.engine.kernels import Values
-from brdfc.source.errors import ProgramError
 
 Wide = NDArray[np.float64]
 
 
-def apply_curves(curves: CurveSet, inputs: Sequence[Values]) -> list[Values]:
-    """A curve a channel."""
-    return [_apply(curve, x) for curve, x in zip(curves.curves, inputs, strict=True)]
-
-
-def _apply(curve: Curve, x: Values) -> Values:
-    if isinstance(curve, SampledCurve):
-        return _sampled(curve, x)
-    if isinstance(curve, OpaqueCurve):
-        raise ProgramError("curves of kind 'clcf' cannot be run yet")
-    return _segmented(curve, x)
-
-
-def _between(points: Values, position: Values) -> Values:
-    """The line between the two points a position lies between.
-
-    The reference rounds the second product alone to float32 before it adds in float64.
-    """
-    last = len(points) - 1
-    index = np.clip(np.nan_to_num(position), 0, last).astype(np.intp)
-    part = position - index.astype(np.float32)
-    upper = (part * points[np.minimum(index + 1, last)]).astype(np.float64)
-    line = (1.0 - part.astype(np.float64)) * points[index] + upper
-    return np.where(part == 0, points[index], line.astype(np.float32))
+def apply_curve(curve: SampledCurve | SegmentedCurve, x: Values) -> Values:
+    """A curve's value for each of x."""
+    return _sampled(curve, x) if isinstance(curve, SampledCurve) else _segmented(curve, x)
 
 
 def _sampled(curve: SampledCurve, x: Values) -> Values:
@@ -60,7 +31,8 @@ def _sampled(curve: SampledCurve, x: Values) -> Values:
         )
     below = slopes[0] * x + (points[0] - slopes[0] * first)
     above = slopes[1] * x + (points[-1] - slopes[1] * last)
-    inside = _between(points, (x - first) / span * steps)
+    lower, upper, part = cell((x - first) / span * steps, len(points) - 1)
+    inside = line(points[lower], points[upper], part)
     finite = np.where(x < first, below, np.where(x > last, above, inside))
     # The newest release gives 1 or 0 for what is not finite, whatever the curve; older ones differ.
     return np.where(np.isfinite(x), finite, (x > 0).astype(np.float32))
@@ -83,9 +55,10 @@ def _segment(curve: SegmentedCurve, k: int, x: Values) -> Values:
         wide = _FORMULAS[segment.type](x.astype(np.float64), *segment.parameters)
         return wide.astype(np.float32)
     start, end = np.float32(curve.breaks[k - 1]), np.float32(curve.breaks[k])
-    points = np.concatenate([[_at_end(curve, k - 1)], segment.samples.values])
-    steps = np.float32(segment.samples.count)
-    return _between(points.astype(np.float32), (x - start) / (end - start) * steps)
+    values = np.concatenate([[_at_end(curve, k - 1)], segment.samples.values])
+    points, count = values.astype(np.float32), segment.samples.count
+    lower, upper, part = cell((x - start) / (end - start) * np.float32(count), count)
+    return line(points[lower], points[upper], part)
 
 
 def _at_end(curve: SegmentedCurve, k: int) -> np.float32:

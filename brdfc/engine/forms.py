@@ -6,36 +6,38 @@ import os
 from collections.abc import Mapping
 from threading import Lock
 
-from brdfc.calc.program import Program
 from brdfc.calc.verify import verify
 from brdfc.engine.kernels import Values
 from brdfc.engine.straight import Straight, straighten
+from brdfc.engine.tables import Interpolation
 from brdfc.engine.trace import Chain, Crooked, Route
 from brdfc.source.errors import ProgramError
 
 RECENT, RECENT_STEPS = 512, 200_000
 """Forms kept, those used last, and how many steps they have in all."""
 
-_Key = tuple[tuple[int, ...], int, tuple[tuple[str, bytes | None], ...]]
+_Key = tuple[tuple[int, ...], int, Interpolation, tuple[tuple[str, bytes | None], ...]]
 _recent: dict[_Key, tuple[Chain, Straight | None]] = {}
 """By the elements themselves, which are kept with the form so that no other takes their place."""
 _lock = Lock()
 
 
-def straight_form(chain: Chain, channels: int, variables: Mapping[str, Values]) -> Straight | None:
+def straight_form(
+    chain: Chain, channels: int, variables: Mapping[str, Values], interpolation: Interpolation
+) -> Straight | None:
     """The straight form of a chain in a run, None where it has none; made once for runs alike.
 
     Raises ProgramError where a program cannot be proven safe or channels do not fit.
     """
     same = tuple(sorted((n, None if v.ndim else v.tobytes()) for n, v in variables.items()))
-    key = (tuple(map(id, chain)), channels, same)
+    key = (tuple(map(id, chain)), channels, interpolation, same)
     with _lock:
         if key in _recent:
             _recent[key] = _recent.pop(key)
             return _recent[key][1]
     _check(chain, channels)
     try:
-        found: Straight | None = straighten(chain, channels, variables)
+        found: Straight | None = straighten(chain, channels, variables, interpolation)
     except Crooked:
         found = None
     with _lock:
@@ -59,7 +61,7 @@ def _check(chain: Chain, channels: int) -> None:
         if wanted > channels or (not isinstance(step, Route) and wanted != channels):
             raise ProgramError(f"an element that takes {wanted} channels is given {channels}")
         channels = len(step.sources) if isinstance(step, Route) else step.outputs
-        if isinstance(step, Program):
+        if not isinstance(step, Route):
             verify(step)
 
 

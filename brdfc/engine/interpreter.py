@@ -8,18 +8,16 @@ on its own pixels and the stacks are joined again.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from brdfc.calc.curves import CurveSet
 from brdfc.calc.operators import Operand
-from brdfc.calc.program import Block, Element, If, Matrix, Op, Program, Select
-from brdfc.calc.tables import LookupTable
+from brdfc.calc.program import Block, Element, If, Op, Program, Select
 from brdfc.calc.verify import verify
-from brdfc.engine.curves import apply_curves
+from brdfc.engine.elements import Setting, apply_element
 from brdfc.engine.kernels import (
     BINARY,
     CONSTANTS,
@@ -28,15 +26,14 @@ from brdfc.engine.kernels import (
     IEEE,
     SCALED,
     UNARY,
-    Kernel,
     Values,
     compute,
     holds,
     selector,
 )
-from brdfc.engine.linear import apply_matrix, solve
+from brdfc.engine.linear import solve
 from brdfc.engine.moves import move, rearrange
-from brdfc.engine.tables import apply_table
+from brdfc.engine.tables import Interpolation
 from brdfc.source.errors import ProgramError
 
 BLOCK = 32768
@@ -53,12 +50,11 @@ class _Machine:
     """The state of a set of pixels: channels, stack (top last), temporaries, outputs."""
 
     program: Program
-    environment: Mapping[str, Values]
-    inputs: list[Values]
+    setting: Setting
+    inputs: Sequence[Values]
     stack: list[Values] = field(default_factory=list)
     temporaries: dict[int, Values] = field(default_factory=dict)
     outputs: dict[int, Values] = field(default_factory=dict)
-    binary: Mapping[str, Kernel] = field(default_factory=lambda: BINARY)
 
     def pop(self, count: int) -> list[Values]:
         taken = self.stack[len(self.stack) - count :]
@@ -71,32 +67,35 @@ class _Machine:
         def part(values: Values) -> Values:
             return values[chosen] if values.ndim else values
 
+        environment = {k: part(v) for k, v in self.setting.environment.items()}
         return _Machine(
             self.program,
-            {k: part(v) for k, v in self.environment.items()},
+            replace(self.setting, environment=environment),
             [part(v) for v in self.inputs],
             [part(v) for v in self.stack],
             {k: part(v) for k, v in self.temporaries.items()},
             {k: part(v) for k, v in self.outputs.items()},
-            self.binary,
         )
 
 
 def run(
-    element: Element, pixels: ArrayLike, environment: Mapping[str, ArrayLike], *, ieee: bool = False
+    element: Element,
+    pixels: ArrayLike,
+    environment: Mapping[str, ArrayLike],
+    *,
+    ieee: bool = False,
+    interpolation: Interpolation = Interpolation.LINEAR,
 ) -> Values:
     """Apply an element, usually a calculator, to pixels.
 
     pixels: (..., inputs), taken as float32. environment: variables by signature (four letters,
     spaces at the end left out), a number each, or an array (...) of one for each pixel; `env` finds
     the others undefined. ieee: x/0 is an infinity or NaN,
-    as on engines that leave it to the processor. Returns (..., outputs), float32.
+    as on engines that leave it to the processor. interpolation: of tables of three inputs. Returns
+    (..., outputs), float32.
     Raises ProgramError when a program cannot be proven safe or the channels do not fit.
     """
-    held = element.inputs + element.outputs
-    if isinstance(element, Program):
-        held = verify(element).held
-    step = max(1, min(BLOCK, HELD // max(1, held)))
+    step = max(1, min(BLOCK, HELD // max(1, verify(element).held)))
     array = np.asarray(pixels, dtype=np.float32)
     if array.ndim == 0 or array.shape[-1] != element.inputs:
         raise ProgramError(f"{element.inputs} channels are needed, the array is {array.shape}")
@@ -109,7 +108,7 @@ def run(
             block = flat[start : start + step]
             channels = [np.ascontiguousarray(block[:, c]) for c in range(element.inputs)]
             here = {n: v[start : start + step] if v.ndim else v for n, v in variables.items()}
-            outputs = _apply(element, channels, here, binary)
+            outputs = _apply(element, channels, Setting(here, binary, interpolation))
             for channel, values in enumerate(outputs):
                 result[start : start + step, channel] = values
     return result.reshape(*array.shape[:-1], element.outputs)
@@ -121,24 +120,18 @@ def variable(value: ArrayLike, shape: tuple[int, ...]) -> Values:
     return np.broadcast_to(array, shape).ravel() if array.ndim else array
 
 
-def _apply(
-    element: Element,
-    inputs: list[Values],
-    environment: Mapping[str, Values],
-    binary: Mapping[str, Kernel],
-) -> list[Values]:
+def _apply(element: Element, inputs: Sequence[Values], setting: Setting) -> list[Values]:
     """Any element on a list of channels."""
     if isinstance(element, Program):
-        machine = _Machine(element, environment, inputs, binary=binary)
-        _run_block(element.body, machine)
-        return [machine.outputs[channel] for channel in range(element.outputs)]
-    if isinstance(element, Matrix):
-        return [np.asarray(v) for v in apply_matrix(element, inputs, compute)]
-    if isinstance(element, CurveSet):
-        return apply_curves(element, inputs)
-    if isinstance(element, LookupTable):
-        return apply_table(element, inputs)
-    raise ProgramError(f"elements of kind '{element.signature}' cannot be run yet")
+        return calculate(element, inputs, setting)
+    return apply_element(element, inputs, setting, calculate)
+
+
+def calculate(program: Program, inputs: Sequence[Values], setting: Setting) -> list[Values]:
+    """A verified program on a list of channels."""
+    machine = _Machine(program, setting, inputs)
+    _run_block(program.body, machine)
+    return [machine.outputs[channel] for channel in range(program.outputs)]
 
 
 def _run_block(block: Block, machine: _Machine) -> None:
@@ -201,10 +194,12 @@ def _run_op(op: Op, machine: _Machine) -> None:
         stack += [UNARY[name](x) for x in machine.pop(n)]
     elif name in BINARY:
         values = machine.pop(2 * n)
-        stack += [machine.binary[name](x, y) for x, y in zip(values[:n], values[n:], strict=True)]
+        kernel = machine.setting.binary[name]
+        stack += [kernel(x, y) for x, y in zip(values[:n], values[n:], strict=True)]
     elif name in SCALED:
         *vector, scalar = machine.pop(n + 1)
-        stack += [machine.binary[SCALED[name]](x, scalar) for x in vector]
+        kernel = machine.setting.binary[SCALED[name]]
+        stack += [kernel(x, scalar) for x in vector]
     elif name in FOLDED:
         stack.append(FOLDED[name](machine.pop(n)))
     elif name in GROUPED:
@@ -217,9 +212,9 @@ def _run_op(op: Op, machine: _Machine) -> None:
     elif op.operator.operand is Operand.ELEMENT:
         element = machine.program.elements[n]
         inputs = machine.pop(element.inputs)
-        stack += _apply(element, inputs, machine.environment, machine.binary)
+        stack += _apply(element, inputs, machine.setting)
     elif name == "env":
-        value = _FIXED.get(op.signature, machine.environment.get(op.signature))
+        value = _FIXED.get(op.signature, machine.setting.environment.get(op.signature))
         defined = value is not None and op.signature != "ndef"
         stack += [np.asarray(v, np.float32) for v in (0.0 if value is None else value, defined)]
     elif name == "data" or name in CONSTANTS:

@@ -60,7 +60,7 @@ def shape_of(straight: Straight, inputs: int, outputs: int) -> tuple[Shape, NDAr
         constants.append(value)
         return None
 
-    steps = tuple((s.name, tuple(map(place, s.arguments)), s.target) for s in straight.steps)
+    steps = tuple((s.name, tuple(map(place, s.arguments)), s.targets[0]) for s in straight.steps)
     results = tuple(map(place, straight.outputs))
     shape = Shape(steps, results, straight.read, straight.channels, inputs, outputs)
     return shape, np.array(constants, np.float32)

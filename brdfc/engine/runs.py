@@ -24,6 +24,7 @@ from brdfc.engine.forms import straight_form
 from brdfc.engine.jobs import Compiled, Job, by_code, in_blocks
 from brdfc.engine.kernels import Values
 from brdfc.engine.layout import Samples, flat, samples, shares
+from brdfc.engine.tables import Interpolation
 from brdfc.engine.trace import Chain, Route
 from brdfc.source.errors import MissingExtraError, ProgramError
 
@@ -42,18 +43,29 @@ def run(
     engine: Engine | str = Engine.AUTO,
     threads: int | None = None,
     total: int | None = None,
+    interpolation: Interpolation = Interpolation.LINEAR,
 ) -> Values:
     """Apply a chain of elements to pixels.
 
     pixels: (..., channels), taken as float32. environment: variables by signature, as for
-    interpreter.run. total: how many pixels are to come in all, where these are a part. Returns
-    (..., outputs), float32. Raises ProgramError where a program cannot be proven safe or channels
-    do not fit, MissingExtraError where the compiled engine is asked for without llvmlite.
+    interpreter.run. total: how many pixels are to come in all, where these are a part.
+    interpolation: of tables of three inputs. Returns (..., outputs), float32.
+    Raises ProgramError where a program cannot be proven safe or channels do not fit,
+    MissingExtraError where the compiled engine is asked for without llvmlite.
     """
     array = np.asarray(pixels, dtype=np.float32)
     result = np.empty((*array.shape[:-1], outputs_of(chain, channels)), np.float32)
-    one = ([environment], [result])
-    sweep(chain, channels, array, *one, engine=engine, threads=threads, total=total)
+    sweep(
+        chain,
+        channels,
+        array,
+        [environment],
+        [result],
+        engine=engine,
+        threads=threads,
+        total=total,
+        interpolation=interpolation,
+    )
     return result
 
 
@@ -75,6 +87,7 @@ def sweep(
     engine: Engine | str = Engine.AUTO,
     threads: int | None = None,
     total: int | None = None,
+    interpolation: Interpolation = Interpolation.LINEAR,
 ) -> None:
     """The same for several runs over the same pixels.
 
@@ -98,10 +111,10 @@ def sweep(
     if engine is Engine.INTERPRETER:
         forms = None
     else:
-        forms = [straight_form(chain, channels, e) for e in given]
+        forms = [straight_form(chain, channels, e, interpolation) for e in given]
     if forms is None or any(form is None for form in forms):
         for environment, result in zip(environments, results, strict=True):
-            result[...] = _interpreted(chain, array, environment)
+            result[...] = _interpreted(chain, array, environment, interpolation)
         return
     found = [flat(result) for result in results]
     jobs = [
@@ -151,7 +164,9 @@ if hasattr(os, "register_at_fork"):  # the threads are not in the other process
     os.register_at_fork(after_in_child=_pool.cache_clear)
 
 
-def _interpreted(chain: Chain, pixels: Values, environment: Environment) -> Values:
+def _interpreted(
+    chain: Chain, pixels: Values, environment: Environment, interpolation: Interpolation
+) -> Values:
     """Element by element over the whole array."""
     values = pixels
     for step in chain:
@@ -163,7 +178,7 @@ def _interpreted(chain: Chain, pixels: Values, environment: Environment) -> Valu
                 routed[..., channel] = default if source is None else values[..., source]
             values = routed
         else:
-            values = interpreter.run(step, values, environment)
+            values = interpreter.run(step, values, environment, interpolation=interpolation)
     return values
 
 

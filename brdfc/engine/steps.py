@@ -33,7 +33,12 @@ class Machine:
             registers[place][:] = inputs[place]
         for step in straight.steps:
             arguments = [registers[a] if isinstance(a, int) else a for a in step.arguments]
-            out = registers[step.target]
+            if step.function is not None:
+                found = step.function([np.asarray(a) for a in arguments])
+                for target, values in zip(step.targets, found, strict=True):
+                    registers[target][:] = values
+                continue
+            out = registers[step.targets[0]]
             operation = _WRITTEN.get(step.name)
             if operation is not None:
                 operation(self, out, *arguments)

@@ -13,8 +13,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from brdfc.calc.appearance import AppearanceTransform
+from brdfc.calc.curves import Curve, CurveSet
 from brdfc.calc.operators import Operand
 from brdfc.calc.program import Block, Element, If, Matrix, Op, Program, Select
+from brdfc.calc.tables import LookupTable
+from brdfc.calc.tints import TintArray
+from brdfc.calc.verify import verify
+from brdfc.engine.elements import Setting, apply_element, changes_nothing
+from brdfc.engine.interpreter import calculate
 from brdfc.engine.kernels import (
     BINARY,
     CONSTANTS,
@@ -28,6 +35,8 @@ from brdfc.engine.kernels import (
 )
 from brdfc.engine.linear import apply_matrix, solve
 from brdfc.engine.moves import move, rearrange
+from brdfc.engine.tables import Interpolation
+from brdfc.engine.written import ELEMENT, Operation, Source, Value, identity
 
 MOST_STEPS, MOST_FOLLOWED = 20_000, 1_000_000
 """A chain that comes to more is left to the interpreter: with both sides of every branch, nested
@@ -36,7 +45,8 @@ steps."""
 
 
 class Crooked(Exception):
-    """A chain that cannot be written down so: tables and curves in it, or too many steps."""
+    """A chain that cannot be written down so: too many steps, a curve that is another for another
+    pixel, or an element that is only carried."""
 
 
 @dataclass(frozen=True)
@@ -53,18 +63,6 @@ class Route:
 Chain = tuple[Element | Route, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Source:
-    """A value of each pixel: an input by its place, or what an operation gives."""
-
-    name: str
-    arguments: tuple[Source | np.float32, ...] = ()
-    place: int = 0
-
-
-Value = Source | np.float32
-
-
 @dataclass
 class Trace:
     """What has been written down: made, every operation in order, and the inputs that are read.
@@ -75,14 +73,15 @@ class Trace:
 
     channels: int
     environment: Mapping[str, Values]
-    made: list[Source] = field(default_factory=list)
+    interpolation: Interpolation
+    made: list[Operation] = field(default_factory=list)
     inputs: list[Source] = field(default_factory=list)
     differing: dict[str, Source] = field(default_factory=dict)
-    known: dict[tuple[object, ...], Source] = field(default_factory=dict)
+    known: dict[tuple[object, ...], Operation] = field(default_factory=dict)
     followed: int = 0
 
     def __post_init__(self) -> None:
-        self.inputs = [Source("in", (), i) for i in range(self.channels)]
+        self.inputs = [Source(i) for i in range(self.channels)]
 
     def follow(self, chain: Chain) -> list[Value]:
         """The outputs of a chain of verified elements; Crooked where it cannot be written down."""
@@ -105,7 +104,38 @@ class Trace:
             return [run.outputs[channel] for channel in range(element.outputs)]
         if isinstance(element, Matrix):
             return apply_matrix(element, values, self.apply)
+        if isinstance(element, CurveSet):
+            return [self.curve(c, x) for c, x in zip(element.curves, values, strict=True)]
+        if isinstance(element, LookupTable | TintArray | AppearanceTransform):
+            return self.call(element, element, values)
+        if changes_nothing(element):
+            return list(values)
         raise Crooked
+
+    def curve(self, curve: Curve, value: Value) -> Value:
+        """A curve that no variable makes another one for another pixel."""
+        element = CurveSet((curve,))
+        read = verify(element).variables
+        if any(name in self.environment and self.environment[name].ndim for name in read):
+            raise Crooked
+        (result,) = self.call(curve, element, [value])
+        return result
+
+    def call(self, key: object, element: Element, values: Sequence[Value]) -> list[Value]:
+        """An element that is no program, or its results where they are the same for all pixels.
+        key: what the element is known by, and lives as long as the chain."""
+        self.follow_more(10 * len(values))
+        same = {name: v for name, v in self.environment.items() if not v.ndim}
+        setting = Setting(same, BINARY, self.interpolation)
+
+        def function(channels: Sequence[Values]) -> list[Values]:
+            return apply_element(element, channels, setting, calculate)
+
+        if not any(isinstance(v, Source) for v in values):
+            return [np.float32(v) for v in function([np.asarray(v, np.float32) for v in values])]
+        arguments = (ELEMENT, id(key), *map(identity, values))
+        results = tuple(Source() for _ in range(element.outputs))
+        return [*self.made_once(arguments, Operation(ELEMENT, tuple(values), results, function))]
 
     def apply(self, name: str, *arguments: Value) -> Value:
         """An operation, or its result where it is the same for all pixels."""
@@ -114,14 +144,18 @@ class Trace:
             return np.float32(compute(name, *(np.asarray(a, np.float32) for a in arguments)))
         if name == "mul" and any(a == 1 for a in arguments if not isinstance(a, Source)):
             return next(a for a in arguments if isinstance(a, Source))
-        # Constants by their bits: 0 and -0 are two.
-        key = (name, *(a if isinstance(a, Source) else a.tobytes() for a in arguments))
+        key = (name, *map(identity, arguments))
+        (result,) = self.made_once(key, Operation(name, arguments, (Source(),)))
+        return result
+
+    def made_once(self, key: tuple[object, ...], operation: Operation) -> tuple[Source, ...]:
+        """The results of an operation, which is written down where it is not known."""
         if key not in self.known:
             if len(self.made) >= MOST_STEPS:
                 raise Crooked
-            self.known[key] = Source(name, arguments)
-            self.made.append(self.known[key])
-        return self.known[key]
+            self.known[key] = operation
+            self.made.append(operation)
+        return self.known[key].results
 
     def follow_more(self, count: int) -> None:
         """Count what is followed; Crooked where it is too much."""
@@ -141,7 +175,7 @@ class Trace:
             return [np.float32(value), np.float32(1)]
         if signature not in self.differing:
             place = self.channels + len(self.differing)
-            self.differing[signature] = Source("in", (), place)
+            self.differing[signature] = Source(place)
         return [self.differing[signature], np.float32(1)]
 
 
@@ -253,9 +287,4 @@ class _Run:
         return {k: self.chosen(condition, taken[k], otherwise[k]) for k in common}
 
     def chosen(self, condition: Value, a: Value, b: Value) -> Value:
-        same = a is b if isinstance(a, Source) else _same(a, b)
-        return a if same else self.trace.apply("choose", condition, a, b)
-
-
-def _same(a: Value, b: Value) -> bool:
-    return not isinstance(a, Source) and not isinstance(b, Source) and a.tobytes() == b.tobytes()
+        return a if identity(a) == identity(b) else self.trace.apply("choose", condition, a, b)

@@ -179,7 +179,7 @@ def _identity(
     """What makes a run the same one: its source, profiles, variables and result."""
     size, written = image.segments.state
     environments = [sorted(r.link.environment.items()) for r in renderings]
-    matrices = [repr((r.white, r.observer, r.adaptation)) for r in renderings]
+    matrices = [repr((r.white, r.observer, r.adaptation, r.link.interpolation)) for r in renderings]
     return {
         "source": f"{size} bytes of {written}",
         "profiles": digest(*(p.source or p.to_bytes() for p in profiles)),

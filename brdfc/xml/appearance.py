@@ -1,42 +1,35 @@
-"""The elements of CIECAM02, XYZ to Jab and back, as XML: brdfc carries them as bytes."""
+"""The appearance transforms, XYZ to Jab and back, as XML."""
 
 from __future__ import annotations
 
-import struct
-
-from brdfc.calc.program import OpaqueElement
+from brdfc.calc.appearance import BACKWARD, FORWARD, AppearanceTransform
 from brdfc.xml.document import Node
-from brdfc.xml.values import channels, only_number, real
+from brdfc.xml.values import channels, only_number, real, to_float32
 from brdfc.xml.writing import number
 
-APPEARANCE = {"XYZToJabElement": "XtoJ", "JabToXYZElement": "JtoX"}
+APPEARANCE = {"XYZToJabElement": FORWARD, "JabToXYZElement": BACKWARD}
 _PARAMETERS = (
     *("Luminance", "BackgroundLuminance", "ImpactSurround"),
     *("ChromaticInductionFactor", "AdaptationFactor"),
 )
 """What follows the white, in the order of the file."""
-_LAYOUT = struct.Struct(">4sIHH8f")
 
 
-def appearance_node(element: OpaqueElement) -> Node | None:
-    """The node, or None where the bytes are not what they should be."""
-    if len(element.data) != _LAYOUT.size or element.data[4:8] != bytes(4):
-        return None
-    white, values = (values := _LAYOUT.unpack(element.data)[4:])[:3], values[3:]
-    if not all(abs(v) < float("inf") for v in (*white, *values)):
-        return None
-    tag = next(tag for tag, kind in APPEARANCE.items() if kind == element.signature)
-    xyz = Node("XYZNumber", dict(zip("XYZ", map(number, white), strict=True)))
+def appearance_node(transform: AppearanceTransform) -> Node:
+    """The node of a transform."""
+    tag = next(tag for tag, kind in APPEARANCE.items() if kind == transform.signature)
+    xyz = Node("XYZNumber", dict(zip("XYZ", map(number, transform.white), strict=True)))
     parameters = [Node("WhitePoint", {}, [xyz])]
-    for name, value in zip(_PARAMETERS, values, strict=True):
+    for name, value in zip(_PARAMETERS, transform.conditions, strict=True):
         parameters.append(Node(name, text=number(value)))
-    attributes = {"InputChannels": str(element.inputs), "OutputChannels": str(element.outputs)}
+    attributes = {"InputChannels": "3", "OutputChannels": "3"}
     return Node(tag, attributes, [Node("ColorAppearanceParams", {}, parameters)])
 
 
-def read_appearance(node: Node) -> OpaqueElement:
-    """The element of a node."""
-    inputs, outputs = channels(node)
+def read_appearance(node: Node) -> AppearanceTransform:
+    """The transform of a node."""
+    if channels(node) != (3, 3):
+        node.fail("an appearance transform takes 3 channels to 3")
     parameters = node.child("ColorAppearanceParams")
     white = parameters and parameters.child("WhitePoint")
     xyz = white and white.child("XYZNumber")
@@ -48,9 +41,7 @@ def read_appearance(node: Node) -> OpaqueElement:
         if child is None:
             parameters.fail(f"<{name}> is missing")
         values.append(only_number(child))
-    kind = APPEARANCE[node.tag]
-    try:
-        data = _LAYOUT.pack(kind.encode(), 0, inputs, outputs, *values)
-    except (struct.error, OverflowError):
-        node.fail("a number does not fit a 32-bit float")
-    return OpaqueElement(kind, inputs, outputs, data)
+    x, y, z, luminance, background, impact, induction, degree = to_float32(values)
+    return AppearanceTransform(
+        APPEARANCE[node.tag], (x, y, z), luminance, background, impact, induction, degree
+    )

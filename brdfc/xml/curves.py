@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import math
-import struct
 from collections.abc import Callable
 
 import numpy as np
 
+from brdfc.calc.calculator_curves import CalculatorCurve
 from brdfc.calc.curves import (
     Curve,
     CurveSet,
     FormulaSegment,
-    OpaqueCurve,
     SampledCurve,
     SampledSegment,
     Segment,
     SegmentedCurve,
 )
+from brdfc.calc.program import Program
 from brdfc.calc.samples import Samples, Storage
 from brdfc.source.errors import ProgramError
 from brdfc.xml.document import Node
@@ -29,12 +29,10 @@ _ROW = 8
 _UNSTORED = 0.0
 """What stands first in a sampled segment: the XML has a place for the value at the start, which a
 profile does not store, because it is what the segment before gives there."""
-_CALCULATOR_CURVE = struct.Struct(">4sIIffHH")
-"""`clcf` before its calculator: signature, 0, desired size, first, last, extension, 0."""
 
 
-def curve_nodes(curves: CurveSet, calculator: Callable[[bytes], Node]) -> list[Node]:
-    """A node a channel. calculator: the node of a calculator's bytes."""
+def curve_nodes(curves: CurveSet, calculator: Callable[[Program], Node]) -> list[Node]:
+    """A node a channel. calculator: the node of a calculator."""
     nodes, first = [], dict[int, int]()
     for index, curve in enumerate(curves.curves):
         if id(curve) in first:
@@ -45,7 +43,7 @@ def curve_nodes(curves: CurveSet, calculator: Callable[[bytes], Node]) -> list[N
     return nodes
 
 
-def _curve_node(curve: Curve, calculator: Callable[[bytes], Node]) -> Node:
+def _curve_node(curve: Curve, calculator: Callable[[Program], Node]) -> Node:
     if isinstance(curve, SampledCurve):
         attributes = {
             "FirstEntry": number(curve.first),
@@ -55,16 +53,14 @@ def _curve_node(curve: Curve, calculator: Callable[[bytes], Node]) -> Node:
         }
         lines = rows(curve.samples.values.tolist(), _ROW)
         return Node("SingleSampledCurve", attributes, lines=lines)
-    if isinstance(curve, OpaqueCurve):
-        _, _, size, first, last, extension, _ = _CALCULATOR_CURVE.unpack_from(curve.data)
+    if isinstance(curve, CalculatorCurve):
         attributes = {
-            "FirstEntry": number(first),
-            "LastEntry": number(last),
-            "ExtensionType": str(extension),
-            "DesiredSize": str(size),
+            "FirstEntry": number(curve.first),
+            "LastEntry": number(curve.last),
+            "ExtensionType": str(int(curve.extend)),
+            "DesiredSize": str(curve.size),
         }
-        inner = calculator(curve.data[_CALCULATOR_CURVE.size :])
-        return Node("SampledCalculatorCurve", attributes, [inner])
+        return Node("SampledCalculatorCurve", attributes, [calculator(curve.calculator)])
     ends = ["-infinity", *map(number, curve.breaks), "+infinity"]
     pieces = zip(curve.segments, ends, ends[1:], strict=False)
     return Node("SegmentedCurve", {}, [_segment_node(*piece) for piece in pieces])
@@ -79,8 +75,8 @@ def _segment_node(segment: Segment, start: str, end: str) -> Node:
     return Node("FormulaSegment", attributes, lines=rows(segment.parameters, _ROW))
 
 
-def read_curves(node: Node, folder: Folder, calculator: Callable[[Node], bytes]) -> CurveSet:
-    """The curve set of a node. calculator: the bytes of a calculator's node."""
+def read_curves(node: Node, folder: Folder, calculator: Callable[[Node], Program]) -> CurveSet:
+    """The curve set of a node. calculator: the program of a calculator's node."""
     count, outputs = channels(node)
     if outputs != count or len(node.children) != count:
         node.fail(f"{count} channels in, {outputs} out, {len(node.children)} curves")
@@ -96,7 +92,7 @@ def read_curves(node: Node, folder: Folder, calculator: Callable[[Node], bytes])
     return CurveSet(tuple(curves))
 
 
-def _read_curve(node: Node, folder: Folder, calculator: Callable[[Node], bytes]) -> Curve:
+def _read_curve(node: Node, folder: Folder, calculator: Callable[[Node], Program]) -> Curve:
     if node.tag == "SegmentedCurve":
         return _read_segmented(node, folder)
     first, last = to_float32([real(node, "FirstEntry"), real(node, "LastEntry")])
@@ -105,8 +101,7 @@ def _read_curve(node: Node, folder: Folder, calculator: Callable[[Node], bytes])
         if len(node.children) != 1:
             node.fail("one <CalculatorElement> stands in a sampled calculator curve")
         size = integer(node, "DesiredSize", high=0xFFFFFFFF)
-        head = _CALCULATOR_CURVE.pack(b"clcf", 0, size, first, last, extension, 0)
-        return OpaqueCurve(head + calculator(node.children[0]))
+        return CalculatorCurve(size, first, last, calculator(node.children[0]), bool(extension))
     storage = _storage(node)
     values = folder.samples(node, storage=storage)
     return SampledCurve(first, last, _samples(node, values, storage), bool(extension))

@@ -1,4 +1,4 @@
-"""Elements as XML, and back: matrices, tables, curves, calculators, and others as bytes."""
+"""Elements as XML, and back: those that are run, and others as bytes."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from brdfc.calc.appearance import AppearanceTransform
 from brdfc.calc.binary import decode_element, encode_element
 from brdfc.calc.curves import CurveSet
 from brdfc.calc.disassembly import disassemble
-from brdfc.calc.program import Element, Matrix, OpaqueElement, Program
+from brdfc.calc.program import Element, Matrix, Program
 from brdfc.calc.samples import Samples, Storage
 from brdfc.calc.tables import LookupTable
 from brdfc.icc.numbers import NUMBER_FORMATS, NumberArray
@@ -55,23 +56,13 @@ class ElementWriter:
         if isinstance(element, LookupTable):
             return _table_node(element)
         if isinstance(element, CurveSet):
-            try:
-                nodes = curve_nodes(element, self._curve_calculator)
-            except (ProgramError, struct.error):  # a curve that is carried, and not well-formed
-                return _unknown_node(element)
+            nodes = curve_nodes(element, self.node)
             return Node("CurveSetElement", _attributes(element), nodes)
-        assert isinstance(element, OpaqueElement)
-        if element.signature in APPEARANCE.values():
-            return appearance_node(element) or _unknown_node(element)
+        if isinstance(element, AppearanceTransform):
+            return appearance_node(element)
         if element.signature == "tint":
             return _tint_node(element)
         return _unknown_node(element)
-
-    def _curve_calculator(self, data: bytes) -> Node:
-        element = decode_element(data, "curve")
-        if not isinstance(element, Program):
-            raise ProgramError("a curve is sampled from a calculator only")
-        return self.node(element)
 
     def _calculator(self, program: Program, names: Names) -> Node:
         temporaries = variables(program.body)
@@ -117,9 +108,9 @@ def _unknown_node(element: Element) -> Node:
     return Node("UnknownElement", attributes, lines=lines)
 
 
-def _tint_node(element: OpaqueElement) -> Node:
+def _tint_node(element: Element) -> Node:
     try:
-        array = NumberArray.decode(element.data[HEADER:], "tint")
+        array = NumberArray.decode(encode_element(element)[HEADER:], "tint")
     except (ProfileError, KeyError):  # an array that is carried, and not well-formed
         return _unknown_node(element)
     inside = Node(TYPE_NAMES[array.kind], {}, [array_node(array)])
@@ -145,8 +136,11 @@ def read_element(node: Node, folder: Folder, depth: int = 0) -> Element:
 
 
 def _read(node: Node, folder: Folder, depth: int) -> Element:
-    def calculator(inner: Node) -> bytes:
-        return encode_element(read_element(inner, folder, depth + 1))
+    def calculator(inner: Node) -> Program:
+        element = read_element(inner, folder, depth + 1)
+        if not isinstance(element, Program):
+            inner.fail("a curve is sampled from a <CalculatorElement> only")
+        return element
 
     readers: dict[str, Callable[[], Element]] = {
         "MatrixElement": lambda: _read_matrix(node),
@@ -206,19 +200,18 @@ def _read_table(node: Node, folder: Folder) -> LookupTable:
     return LookupTable(inputs, outputs, grid, samples, extended)
 
 
-def _read_tint(node: Node, folder: Folder) -> OpaqueElement:
+def _read_tint(node: Node, folder: Folder) -> Element:
     inputs, outputs = channels(node)
     arrays = [child for child in node.children if TYPE_SIGNATURES.get(child.tag) in NUMBER_FORMATS]
     if len(arrays) != 1 or len(node.children) != 1:
         node.fail("one array of numbers stands in a tint array")
     try:
         data = read_array(arrays[0], folder).encode()
-        head = struct.pack(">4sIHH", b"tint", 0, inputs, outputs)
-    except ProfileError as error:
+        return decode_element(struct.pack(">4sIHH", b"tint", 0, inputs, outputs) + data, node.tag)
+    except (ProfileError, ProgramError) as error:
         if "\n" in error.message:
             raise
         arrays[0].fail(error.message)
-    return OpaqueElement("tint", inputs, outputs, head + data)
 
 
 def _read_unknown(node: Node) -> Element:

@@ -1,7 +1,9 @@
-"""Curve sets and lookup tables of every kind, for the tests of their bytes and of their values."""
+"""Elements of every kind, for the tests of their bytes and of their values."""
 
 import numpy as np
 
+from brdfc.calc.appearance import AppearanceTransform
+from brdfc.calc.calculator_curves import CalculatorCurve
 from brdfc.calc.curves import (
     CurveSet,
     FormulaSegment,
@@ -9,8 +11,11 @@ from brdfc.calc.curves import (
     SampledSegment,
     SegmentedCurve,
 )
+from brdfc.calc.program import Program
 from brdfc.calc.samples import Samples, Storage
 from brdfc.calc.tables import LookupTable
+from brdfc.calc.text import assemble
+from brdfc.calc.tints import TintArray
 
 RANDOM = np.random.default_rng(0)
 
@@ -70,7 +75,39 @@ TABLES = [
     *(table(inputs, Storage.FLOAT32, extended=False) for inputs in range(1, 7)),
     LookupTable(7, 3, (2,) * 7, Samples.of(RANDOM.uniform(0, 1, 3 * 2**7))),
 ]
+TINTS = [
+    TintArray(outputs, Samples.of(RANDOM.uniform(0, 1, outputs * steps), storage))
+    for storage in Storage
+    for outputs, steps in ((1, 2), (1, 17), (3, 5), (3, 1000))
+]
+D65 = (single(95.05), 100.0, single(108.88))
+
+
+def appearance(kind: str, *numbers: float) -> AppearanceTransform:
+    x, y, z, *conditions = map(single, numbers)
+    return AppearanceTransform(kind, (x, y, z), *conditions)
+
+
+APPEARANCE = {kind: appearance(kind, *D65, 60, 20, 0.69, 1, 1) for kind in ("XtoJ", "JtoX")}
+
+
+def calculated(
+    text: str, size: int, first: float = 0.0, last: float = 1.0, *, extend: bool = False
+) -> CalculatorCurve:
+    calculator = Program(1, 1, assemble(f"{{ in {text} out }}"))
+    return CalculatorCurve(size, single(first), single(last), calculator, extend)
+
+
+CALCULATED = [
+    *(calculated("sq", size, extend=extend) for size in (2, 3, 5, 400) for extend in (False, True)),
+    calculated("exp", 33, -0.7, 1.3, extend=True),
+    calculated("ln", 5, extend=True),  # the first sample is infinite
+    calculated("env(inci) if { } else { pop 0.5 } mul cos", 64),
+    calculated("pop 0.25", 7),
+    calculated("7 mul sin", 100_000),  # 16384 samples are taken
+]
 CURVE_SETS = [
     *(CurveSet((curve,)) for curve in (*SAMPLED.values(), *SEGMENTED.values(), *ALONE.values())),
     SHARED,
+    *(CurveSet((curve,)) for curve in CALCULATED),
 ]

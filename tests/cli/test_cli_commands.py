@@ -14,7 +14,13 @@ import tifffile
 from cli_process import run
 
 import brdfc
+from brdfc.calc.program import Program
+from brdfc.calc.samples import Samples
+from brdfc.calc.tables import LookupTable
+from brdfc.calc.text import assemble
 from brdfc.colour.difference import D50
+from brdfc.profiles.content import Content
+from brdfc.profiles.multiplex import profile_pair
 
 ROOT = Path(__file__).parents[2]
 GLOSS = """model gloss "Lambert with a gloss that grows with the angle"
@@ -188,6 +194,23 @@ def test_an_unwritable_folder_is_said_in_one_line(tmp_path: Path) -> None:
 
 
 # ---------------------------------------------------------------- eval
+
+
+def test_tables_are_interpolated_as_is_said(tmp_path: Path) -> None:
+    """A table that is 1 in a corner alone is the least of the inputs in tetrahedra, else their
+    product."""
+    corner = LookupTable(3, 3, (2, 2, 2), Samples.of([0] * 21 + [1] * 3))
+    program = Program(3, 3, assemble("{ in[0,3] clut out[0,3] }"), (corner,))
+    pair = profile_pair(Content("corner", program, ("a", "b", "c"), (0.0,) * 3))
+    paths = pair.save(tmp_path / "corner_mvis.icc")
+    image = tmp_path / "in.tif"
+    tifffile.imwrite(image, np.full((2, 2, 3), (0.5, 0.75, 0.25), np.float32), photometric="rgb")
+    given = ["--interpolation", "tetrahedral"]
+    assert run("eval", *paths, "--pixel", "0.5,0.75,0.25").stdout == "0.09375 0.09375 0.09375\n"
+    assert run("eval", *paths, "--pixel", "0.5,0.75,0.25", *given).stdout == "0.25 0.25 0.25\n"
+    done = run("apply", *paths, image, "-o", tmp_path / "out.tif", *given)
+    assert done.returncode == 0, done.stderr
+    assert (tifffile.imread(tmp_path / "out.tif") == np.float32(0.25)).all()
 
 
 def test_eval_prints_nine_digits_a_line_a_pixel(ward: tuple[Path, Path]) -> None:

@@ -10,7 +10,11 @@ import numpy as np
 import pytest
 
 import brdfc
-from brdfc.calc.program import Matrix, Op, Program
+from brdfc.calc.calculator_curves import CalculatorCurve
+from brdfc.calc.curves import CurveSet
+from brdfc.calc.program import Element, Matrix, Op, Program
+from brdfc.calc.samples import Samples
+from brdfc.calc.tables import LookupTable
 from brdfc.calc.text import assemble
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import NumberArray, Pipeline, Utf8Array
@@ -214,3 +218,42 @@ def test_sweeps_that_cannot_be(
 ) -> None:
     with pytest.raises(ValueGivenError, match=message):
         ward_link.sweep(np.ones((2, 5)), **given)  # type: ignore[arg-type]
+
+
+TABLE = LookupTable(3, 3, (2, 2, 2), Samples.of(np.linspace(0, 1, 24) ** 2))
+GAIN = Program(1, 1, assemble("{ in env(gain) pop mul out }"))
+
+
+def with_elements(*elements: Element) -> tuple[Profile, Profile]:
+    """A pair whose MVIS runs some elements of three channels after its program."""
+    made = pair("{ in[0,3] out[0,3] }", ["a", "b", "c"])
+    pipeline = made.mvis.tags["M2B0"]
+    assert isinstance(pipeline, Pipeline)
+    changed = Pipeline(3, 3, (*pipeline.elements, *elements))
+    return made.mid, with_tags(made.mvis, M2B0=changed)
+
+
+def test_tables_in_tetrahedra() -> None:
+    pixels = np.random.default_rng(0).uniform(0, 1, (50, 3)).astype(np.float32)
+    linear, tetrahedral = (
+        brdfc.connect(*with_elements(TABLE), interpolation=name)
+        for name in ("linear", "tetrahedral")
+    )
+    found = tetrahedral.apply(pixels)
+    assert np.abs(found - linear.apply(pixels)).max() > 0.01
+    np.testing.assert_array_equal(found, tetrahedral.sweep(pixels))
+    np.testing.assert_array_equal(found, tetrahedral.together([tetrahedral], pixels)[1])
+    with pytest.raises(ValueGivenError, match="no interpolation 'cubic'"):
+        brdfc.connect(*with_elements(TABLE), interpolation="cubic")
+
+
+def test_variables_of_curves() -> None:
+    """A curve that is sampled from a program makes the program's variables those of the link."""
+    link = brdfc.connect(
+        *with_elements(CurveSet((CalculatorCurve(9, 0.0, 1.0, GAIN),) * 3)), env={"gain": 0.5}
+    )
+    np.testing.assert_allclose(link.apply([1.0, 0.5, 0.25]), [0.5, 0.25, 0.125])
+    np.testing.assert_allclose(link.sweep([1.0, 0.5, 0.25], gain=[1, 2])[1], [2, 1, 0.5])
+    hostile = CalculatorCurve(0xFFFFFFFF, 0.0, 1.0, Program(1, 1, assemble("{ in out }")))
+    with pytest.raises(LinkError, match="sampled 4,294,967,295 times"):
+        brdfc.connect(*with_elements(CurveSet((hostile,) * 3)))

@@ -1,9 +1,13 @@
-"""Curves and lookup tables: against NumPy written another way, and against the reference engine.
+"""Curves, tables and tints: against NumPy written another way, and against the reference engine.
 
 Measured with iccdev 0.1.1 and followed bit for bit: the order in which a table's corners are added;
 the one product of a sampled curve that is rounded before the sum; the steps of each formula that
 are rounded to float32; what formulas give where ICC.2 leaves them undefined; 1 or 0 from a sampled
-curve for what is not finite; tables clamp their inputs there, NaN to 0 (older releases do not).
+curve for what is not finite; tables clamp their inputs there, NaN to 0 (older releases do not);
+curves sampled from calculators see the variables of the run, are sampled 16384 times at most, and
+give their first sample for what is not finite.
+
+Not followed: tints of whole numbers, which are read from the wrong places there.
 """
 
 import itertools
@@ -13,21 +17,26 @@ import numpy as np
 import pytest
 from calc.calc_elements import (
     ALONE,
+    CALCULATED,
     CURVE_SETS,
     FORMULAS,
     LINE,
     SAMPLED,
     SEGMENTED,
     TABLES,
+    TINTS,
+    calculated,
     formula,
 )
 from engine_reference import encoded, judged, ulps
 
+from brdfc.calc.calculator_curves import CalculatorCurve
 from brdfc.calc.curves import CurveSet, SegmentedCurve
 from brdfc.calc.program import Op, Program
 from brdfc.calc.samples import Samples, Storage
 from brdfc.calc.tables import LookupTable
 from brdfc.calc.text import assemble
+from brdfc.calc.tints import TintArray
 from brdfc.engine.interpreter import run
 
 RANDOM = np.random.default_rng(4)
@@ -128,6 +137,60 @@ def test_in_a_program():
     np.testing.assert_array_equal(result[:, 0], result[:, 1])
 
 
+@pytest.mark.parametrize("tint", TINTS, ids=lambda t: f"{t.samples.storage.name}{t.outputs}")
+def test_tints(tint):
+    """Integers, too, stand for 0 to 1 at equal steps."""
+    steps = tint.samples.values.astype(float).reshape(-1, tint.outputs)
+    x = np.concatenate([RANDOM.uniform(-0.5, 1.5, 300), [0, 1, np.inf, -np.inf]])
+    at = np.linspace(0, 1, len(steps))
+    expected = np.column_stack([np.interp(x.astype(np.float32), at, c) for c in steps.T])
+    np.testing.assert_allclose(run(tint, x[:, None], {}), expected, atol=1e-7 * len(steps))
+
+
+def test_a_tint_of_nothing_is_its_first_step():
+    tint = TintArray(2, Samples.of([0.25, 0.5, 0.75, 1]))
+    assert run(tint, [[np.nan], [-0.0]], {}).tolist() == [[0.25, 0.5]] * 2
+
+
+@pytest.mark.parametrize("curve", CALCULATED, ids=lambda c: str(c.size))
+def test_calculator_curves(curve):
+    """As a sampled curve of the calculator's values, but for what is not finite."""
+    at = np.linspace(curve.first, curve.last, curve.points)[:, None]
+    values = run(curve.calculator, at, {})[:, 0]
+    x = RANDOM.uniform(-2, 3, 300).astype(np.float32)
+    inside = x[(x > curve.first) & (x < curve.last)]
+    found = run(CurveSet((curve,)), inside[:, None], {})[:, 0]
+    finite = np.isfinite(found)
+    expected = np.interp(inside.astype(float), at[:, 0], values)
+    np.testing.assert_allclose(found[finite], expected[finite], rtol=1e-4, atol=1e-5)
+    for few in (x[:1], x):  # as many samples are taken as there are values for, or all
+        again = run(CurveSet((curve,)), np.resize(few, 20_000)[:, None], {})[: len(few), 0]
+        np.testing.assert_array_equal(run(CurveSet((curve,)), few[:, None], {})[:, 0], again)
+
+
+@pytest.mark.parametrize("size", [3, 6, 7, 900])
+def test_a_calculator_curve_of_a_variable_for_each_pixel(size):
+    curves = CurveSet((calculated("env(inci) pop mul cos", size, extend=True),))
+    x, gains = RANDOM.uniform(-1, 2, (2, 50)).astype(np.float32)
+    found = run(curves, x[:, None], {"inci": gains})
+    for i in range(50):
+        np.testing.assert_array_equal(found[i], run(curves, [[x[i]]], {"inci": gains[i]})[0])
+    constant = Program(1, 1, assemble("{ 0.3 curv out }"), (curves,))
+    found = run(constant, x[:, None], {"inci": gains})
+    np.testing.assert_array_equal(found[7], run(constant, [[0]], {"inci": gains[7]})[0])
+
+
+@pytest.mark.parametrize("differing", [False, True])
+def test_curves_in_calculators_in_curves_take_what_was_counted(differing):
+    """Eighteen levels of two samples each: near the limit of what a pixel may take."""
+    curves = CurveSet((calculated("env(inci) pop add", 2),))
+    for _ in range(17):
+        program = Program(1, 1, assemble("{ in curv out }"), (curves,))
+        curves = CurveSet((CalculatorCurve(2, 0.0, 1.0, program),))
+    given = {"inci": [0.25, 0.5] if differing else 0.25}
+    assert run(curves, [[0.0], [0.5]], given).tolist()[0] == [0.25]
+
+
 # ---------------------------------------------------------------- against the reference engine
 
 DEGENERATE = [
@@ -152,7 +215,7 @@ INPUTS = 7
 
 def padded(element):
     """A program of 7 inputs that calls an element and gives three outputs."""
-    name = "curv" if isinstance(element, CurveSet) else "clut"
+    name = {"cvst": "curv", "tint": "tint"}.get(element.signature, "clut")
     code = [Op("in", 0, element.inputs), Op(name, 0)]
     code += [Op("in", 0, 1)] * (3 - element.outputs)
     return Program(INPUTS, 3, (*code, Op("out", 0, 3)), (element,))
@@ -163,6 +226,7 @@ def test_like_the_reference_engine(tmp_path):
     elements = [
         *CURVE_SETS,
         *TABLES,
+        *(tint for tint in TINTS if tint.samples.storage.one == 1),
         *(CurveSet((SegmentedCurve((), (segment,)),)) for segment in DEGENERATE),
         CurveSet((SegmentedCurve((0.5,), (DEGENERATE[0], LINE)),)),
     ]
@@ -179,3 +243,13 @@ def test_like_the_reference_engine(tmp_path):
         ours = encoded(run(program, pixels, {}))
         # A power is an ulp off in one C library or the other.
         assert ulps(ours, theirs).max() <= (isinstance(element, CurveSet)), element
+
+
+def test_calculator_curves_see_variables_like_the_reference_engine(tmp_path):
+    pytest.importorskip("iccdev")
+    curve = calculated("env(inci) pop mul cos", 9, -1, 1, extend=True)
+    program, pixels = padded(CurveSet((curve,))), RANDOM.uniform(-2, 2, (100, INPUTS))
+    given = [{"inci": 2.0}, {"inci": -0.5}, {}]
+    theirs = judged(tmp_path, [program], pixels, given)[:, 0]
+    for environment, found in zip(given, theirs, strict=True):
+        assert ulps(encoded(run(program, pixels, environment)), found).max() <= 1

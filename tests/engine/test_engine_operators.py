@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from calc.calc_elements import APPEARANCE
 
 from brdfc.calc.curves import CurveSet, SampledCurve
 from brdfc.calc.operators import OPERATORS, Operand
@@ -11,10 +12,13 @@ from brdfc.calc.program import Matrix, Op, OpaqueElement, Program
 from brdfc.calc.samples import Samples
 from brdfc.calc.tables import LookupTable
 from brdfc.calc.text import assemble
+from brdfc.calc.tints import TintArray
 from brdfc.calc.verify import verify
 from brdfc.engine import interpreter
+from brdfc.engine.elements import Setting
 from brdfc.engine.interpreter import run
 from brdfc.engine.kernels import BINARY, FOLDED, GROUPED, SCALED, UNARY
+from brdfc.engine.tables import Interpolation
 from brdfc.source.errors import ProgramError
 
 INF, NAN = math.inf, math.nan
@@ -64,10 +68,11 @@ def test_every_operator_of_the_table_is_known_and_no_other():
         "calc": Program(1, 1, assemble("{ in out }")),
         "curv": CurveSet((SampledCurve(0.0, 1.0, Samples.of([0, 1])),)),
         "clut": LookupTable(1, 1, (2,), Samples.of([0, 1])),
+        "tint": TintArray(1, Samples.of([0, 1])),
+        "tJab": APPEARANCE["XtoJ"],
+        "fJab": APPEARANCE["JtoX"],
     }
     for name, operator in OPERATORS.items():
-        if name in ("tint", "tJab", "fJab"):
-            continue  # calls of kinds that are carried, and refused when run
         elements = (calls.get(name, matrix),)
         first = {"out": 0, "in": 0, "tget": 0}.get(name, 3 if name in ("solv", "tran") else 2)
         first = 0 if operator.operand in (Operand.SPAN, Operand.ELEMENT) else first
@@ -75,15 +80,18 @@ def test_every_operator_of_the_table_is_known_and_no_other():
         body = [Op("in", 0, 1), Op("copy", 1, 20), Op("tput", 0, 1), Op(name, first, second)]
         run(Program(1, 1, (*body, Op("out", 0, 1)), elements), [[0.5]], {})
     # A kernel without a row, or a name without a branch, ends in the interpreter's last `else`.
+    setting = Setting({}, BINARY, Interpolation.LINEAR)
     with pytest.raises(AssertionError):
-        interpreter._other(Op("unheard"), interpreter._Machine(Program(0, 0, ()), {}, []))
+        interpreter._other(Op("unheard"), interpreter._Machine(Program(0, 0, ()), setting, []))
 
 
-@pytest.mark.parametrize("name", ["tint", "tJab", "fJab", "elem"])
-def test_elements_that_are_only_carried(name):
-    kind = {"tJab": "XtoJ", "fJab": "JtoX", "elem": "tint"}.get(name, name)
-    program = Program(1, 1, assemble(f"{{ in {name} out }}"), (OpaqueElement(kind, 1, 1, b""),))
-    with pytest.raises(ProgramError, match=f"elements of kind '{kind}' cannot be run yet"):
+@pytest.mark.parametrize(("name", "kind"), [("tint", "tint"), ("elem", "emtx"), ("elem", "bACS")])
+def test_elements_that_are_only_carried(name, kind):
+    """Numbers of a type that is not run, spectra, and a marker that changes how many channels."""
+    program = Program(
+        1, 2, assemble(f"{{ in {name} out[0,2] }}"), (OpaqueElement(kind, 1, 2, b""),)
+    )
+    with pytest.raises(ProgramError, match=f"elements of kind '{kind}' cannot be run"):
         run(program, [[1.0]], {})
 
 

@@ -13,17 +13,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from calc.calc_elements import APPEARANCE, SAMPLED, SEGMENTED, TABLES, TINTS, calculated
 from calc.calc_programs import INPUTS, random_program
 from special_pixels import SPECIAL, special_pixels
 
-from brdfc.calc.program import Element, Op, Program
+from brdfc.calc.curves import CurveSet
+from brdfc.calc.program import Element, Op, OpaqueElement, Program
+from brdfc.calc.samples import Storage
 from brdfc.calc.text import assemble
 from brdfc.calc.verify import verify
 from brdfc.engine import choice, interpreter, jobs, native, runs, trace
 from brdfc.engine.choice import Engine
 from brdfc.engine.kernels import BINARY, UNARY
 from brdfc.engine.straight import straighten
+from brdfc.engine.tables import Interpolation
 from brdfc.engine.trace import Crooked, Route
+from brdfc.engine.written import ELEMENT
 from brdfc.source.errors import BrdfcError, ProgramError, ValueGivenError
 
 GOLDEN = sorted((Path(__file__).parents[1] / "golden").glob("*.calc"))
@@ -118,21 +123,53 @@ def test_what_depends_on_no_pixel_is_computed_before() -> None:
     assert [step.name for step in straight.steps] == ["mul"]
 
 
+EVERY_ELEMENT = Program(
+    4,
+    3,
+    assemble(
+        "{ in[0,3] curv(0) clut(1) in(3) tint(2) add[3] tJab(3) in(3) if { 3 smul[3] } "
+        "else { fJab(4) } 0.25 0.5 1 tJab(3) mul[3] in(3) tint(2) add[3] elem(5) "
+        "in[0,3] clut(1) pop(2) sadd[3] out[0,3] }"
+    ),
+    (
+        CurveSet((SAMPLED[Storage.UINT8, True, 17], SEGMENTED[3], calculated("env(inci) mul", 40))),
+        TABLES[8],
+        TINTS[2],
+        APPEARANCE["XtoJ"],
+        APPEARANCE["JtoX"],
+        OpaqueElement("bACS", 3, 3, b"bACS" + bytes(4)),
+    ),
+)
+
+
+@ENGINES
+@pytest.mark.parametrize("interpolation", Interpolation)
+def test_elements_are_steps(engine: Engine, interpolation: Interpolation) -> None:
+    """Those whose arguments are the same for all pixels, too, and results that nothing reads."""
+    pixels = special_pixels(np.random.default_rng(1), 3000, 4)
+    given = {"inci": np.float32(0.75)}
+    straight = straighten((EVERY_ELEMENT,), 4, {"inci": np.asarray(0.75, np.float32)})
+    names = [step.name for step in straight.steps]
+    assert names.count(ELEMENT) == 8  # three curves; the tint once; not Jab of the constants
+    assert not choice.can_be_compiled(straight)
+    found = runs.run((EVERY_ELEMENT,), 4, pixels, given, engine=engine, interpolation=interpolation)
+    expected = interpreter.run(EVERY_ELEMENT, pixels, given, interpolation=interpolation)
+    assert not different(found, expected)
+
+
 @ENGINES
 def test_what_has_no_straight_form_is_left_to_the_interpreter(engine: Engine) -> None:
-    from brdfc.calc.curves import CurveSet, SampledCurve
-    from brdfc.calc.tables import Samples
-
-    curves = CurveSet((SampledCurve(0.0, 1.0, Samples.of([0, 0.2, 1])),))
-    with pytest.raises(Crooked):
-        straighten((curves,), 1, {})
-    values = np.array([[0.0], [0.75], [7.0]], np.float32)
-    np.testing.assert_array_equal(
-        run(curves, values, {}, engine), interpreter.run(curves, values, {})
-    )
+    """A curve of a variable that is another one for every pixel."""
+    curves = CurveSet((calculated("env(inci) pop mul", 5),))
     program = Program(1, 1, assemble("{ in curv sq out }"), (curves,))
-    found = run(program, values, {}, engine)
-    np.testing.assert_array_equal(found, interpreter.run(program, values, {}))
+    values = np.array([[0.0], [0.75], [7.0]], np.float32)
+    gains = np.array([0.5, 2.0, -1.0], np.float32)
+    for element in (curves, program):
+        straighten((element,), 1, {"inci": gains[0], "refl": gains})
+        with pytest.raises(Crooked):
+            straighten((element,), 1, {"inci": gains})
+        found = run(element, values, {"inci": gains}, engine)
+        assert not different(found, interpreter.run(element, values, {"inci": gains}))
 
 
 def test_too_many_steps_have_no_straight_form(monkeypatch: pytest.MonkeyPatch) -> None:

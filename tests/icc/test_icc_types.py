@@ -23,7 +23,7 @@ from brdfc.icc.types import (
 from brdfc.source.errors import ProfileError
 
 MATRIX = Matrix(3, 3, (1.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, -2.0), (0.0, 0.25, 0.0))
-UNKNOWN = OpaqueElement("XtoJ", 3, 3, b"XtoJ" + bytes(4) + struct.pack(">HH", 3, 3) + b"curvy")
+UNKNOWN = OpaqueElement("emtx", 3, 3, b"emtx" + bytes(4) + struct.pack(">HH", 3, 3) + b"curvy")
 TAGS = {
     "mluc": LocalizedText((("enUS", "colour"), ("deDE", "Farbe"), ("enGB", "colour"))),
     "mluc without text": LocalizedText(()),

@@ -12,11 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import brdfc
-from brdfc.calc.binary import encode_element
+from brdfc.calc.appearance import AppearanceTransform
+from brdfc.calc.calculator_curves import CalculatorCurve
 from brdfc.calc.curves import (
     CurveSet,
     FormulaSegment,
-    OpaqueCurve,
     SampledCurve,
     SampledSegment,
     SegmentedCurve,
@@ -25,6 +25,7 @@ from brdfc.calc.program import Element, Matrix, OpaqueElement, Program
 from brdfc.calc.samples import Samples, Storage
 from brdfc.calc.tables import LookupTable
 from brdfc.calc.text import assemble
+from brdfc.calc.tints import TintArray
 from brdfc.icc.header import D50, Header, SpectralRange
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import multiplex_space, n_channel_space
@@ -138,36 +139,36 @@ def test_curves() -> None:
         FormulaSegment(6, (1.0, 1.0, 0.5, 0.25, 1.0, 2.0, 0.125)),
     )
     first = SegmentedCurve((0.0, 0.75), segments)
-    calculator = encode_element(Program(1, 1, assemble("{ in sq out }")))
-    head = struct.pack(">4sIIffHH", b"clcf", 0, 64, 0.0, 1.0, 1, 0)
+    calculator = Program(1, 1, assemble("{ in sq out }"))
     for curve in (
         SampledCurve(-1.0, 2.0, Samples.of([0, 1], Storage.UINT8), extend=True),
         SampledCurve(0.0, 1.0, Samples.of([0, 0.5, 1], Storage.FLOAT16)),
-        OpaqueCurve(head + calculator),
+        CalculatorCurve(64, 0.0, 1.0, calculator, extend=True),
     ):
         same(transform(CurveSet((first, curve, first))))
 
 
-def test_a_curve_that_is_not_well_formed_goes_as_bytes() -> None:
-    broken = transform(CurveSet((OpaqueCurve(b"clcf" + bytes(40)),)))
-    assert "UnknownElement" in to_xml(broken)
-    same(broken)
+def carried(kind: str, data: bytes) -> OpaqueElement:
+    head = struct.pack(">4sIHH", kind.encode(), 0, 1, 1)
+    return OpaqueElement(kind, 1, 1, head + data)
 
 
-def test_elements_that_are_carried() -> None:
-    colours = [0.9642, 1.0, 0.8249, 80.0, 20.0, 0.69, 1.0, 1.0]
-    jab = struct.pack(">4sIHH8f", b"XtoJ", 0, 3, 3, *colours)
-    tint = struct.pack(">4sIHH", b"tint", 0, 1, 3) + NumberArray("fl32", (0.5, 0.25, 1.0)).encode()
-    other = struct.pack(">4sIHH", b"emtx", 0, 3, 3) + bytes(range(100))
-    for kind, data, tag in (
-        ("XtoJ", jab, "XYZToJabElement"),
-        ("tint", tint, "TintArrayElement"),
-        ("emtx", other, "UnknownElement"),
-    ):
-        inputs, outputs = struct.unpack(">HH", data[8:12])
-        profile = transform(OpaqueElement(kind, inputs, outputs, data))
-        assert f"<{tag} " in to_xml(profile)
-        same(profile)
+@pytest.mark.parametrize(
+    ("element", "tag"),
+    [
+        (AppearanceTransform("XtoJ", D50, 80.0, 20.0, 0.6875, 1.0, 1.0), "XYZToJabElement"),
+        (AppearanceTransform("JtoX", D50, 80.0, 20.0, 0.6875, 1.0, 1.0), "JabToXYZElement"),
+        *((TintArray(2, Samples.of([0, 0.25, 0.5, 1], s)), "TintArrayElement") for s in Storage),
+        (carried("tint", NumberArray("fl64", (0.1, 1 / 3)).encode()), "TintArrayElement"),
+        (carried("tint", b"what"), "UnknownElement"),
+        (carried("emtx", bytes(range(50))), "UnknownElement"),
+    ],
+    ids=lambda value: getattr(value, "signature", value),
+)
+def test_elements_of_other_kinds(element: Element, tag: str) -> None:
+    profile = transform(element)
+    assert f"<{tag} " in to_xml(profile)
+    same(profile)
 
 
 def test_calculators_and_their_sub_elements() -> None:
