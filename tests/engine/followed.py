@@ -19,6 +19,7 @@ from intervals import Floats, Interval, at, exact, place
 from brdfc.calc.curves import Curve, CurveSet, FormulaSegment, SegmentedCurve
 from brdfc.calc.program import Element, Matrix, Program
 from brdfc.engine.kernels import compute
+from brdfc.engine.tables import Interpolation
 from brdfc.engine.trace import Source, Trace, Value
 
 
@@ -34,7 +35,7 @@ class Followed(Trace):
     ) -> list[Any]:
         """What stands for each output, for pixels (n, channels)."""
         variables = {name: np.asarray(v, np.float32) for name, v in environment.items()}
-        self = cls(program.inputs, variables, **more)
+        self = cls(program.inputs, variables, Interpolation.LINEAR, **more)
         for channel, source in enumerate(self.inputs):
             self.held[source] = self.known_value(pixels[:, channel])
         return [self.of(value) for value in self.follow((program,))]
@@ -42,20 +43,20 @@ class Followed(Trace):
     def of(self, value: Value) -> Any:
         return self.held[value] if isinstance(value, Source) else self.known_value(value)
 
-    def hold(self, name: str, result: Any) -> Source:
-        source = Source(name)
+    def hold(self, result: Any) -> Source:
+        source = Source()
         self.held[source] = result
         return source
 
     def apply(self, name: str, *arguments: Value) -> Value:
         self.follow_more(10)
-        return self.hold(name, self.operation(name, *map(self.of, arguments)))
+        return self.hold(self.operation(name, *map(self.of, arguments)))
 
     def element(self, element: Element, values: Sequence[Value]) -> list[Value]:
         if isinstance(element, (Program, Matrix)):
             return super().element(element, values)
         found = self.called(element, [self.of(v) for v in values])
-        return [self.hold(element.signature, result) for result in found]
+        return [self.hold(result) for result in found]
 
     def known_value(self, values: Any) -> Any:
         raise NotImplementedError
