@@ -56,6 +56,19 @@ TYPE_NAMES: dict[str, str] = {
     "ui16": "uInt16ArrayType",
     "ui32": "uInt32ArrayType",
     "ui64": "uInt64ArrayType",
+    "sf32": "s15Fixed16ArrayType",
+    "uf32": "u16Fixed16ArrayType",
+    "curv": "curveType",
+    "para": "parametricCurveType",
+    "text": "textType",
+    "desc": "textDescriptionType",
+    "zut8": "utf8ZipType",
+    "zxml": "zipXmlType",
+    "ZXML": "ZIPXmlType",
+    "dtim": "dateTimeType",
+    "cicp": "cicpType",
+    "clro": "colorantOrderType",
+    "data": "dataType",
 }
 """The element of a tag type, by signature; any other type is a PrivateType of bytes."""
 
@@ -64,9 +77,10 @@ TYPE_SIGNATURES: dict[str, str] = {
     **{
         name.replace("Array", "Number"): signature
         for signature, name in TYPE_NAMES.items()
-        if signature[:2] in ("fl", "ui")
+        if name.endswith("ArrayType") and name != "tagArrayType"
     },
     "utf8TextType": "utf8",
+    "zipUtf8TextType": "zut8",
     "XYZType": "XYZ ",
     "tagStructureType": "tstr",
 }

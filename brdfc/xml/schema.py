@@ -81,7 +81,7 @@ SCHEMA: dict[str, Kind] = {
     "DictEntry": Kind("Name! Value", "LocalizedName LocalizedValue"),
     "XYZNumber": Kind("X! Y! Z!"),
     "signatureType": Kind("reserved", "TagSignature Signature"),
-    "Data": Kind(_FILE),
+    "Data": Kind("Flag " + _FILE),
     "Array": Kind(_FILE),
     "multiProcessElementType": Kind("reserved", "TagSignature MultiProcessElements"),
     "spectralViewingConditionsType": Kind(
@@ -93,6 +93,16 @@ SCHEMA: dict[str, Kind] = {
     "SurroundXYZ": Kind("X! Y! Z!"),
     "ObserverFuncs": Kind(_SPECTRUM),
     "IlluminantSPD": Kind(_SPECTRUM),
+    "Curve": Kind("IdentitySize", ""),
+    "ParametricCurve": Kind("FunctionType! Reserved", ""),
+    "Unicode": Kind("LanguageCode", ""),
+    "MacScript": Kind("ScriptCode", ""),
+    "HexCompressedData": Kind("", ""),
+    "DateTime": Kind("", ""),
+    "cicpFields": Kind(
+        "ColorPrimaries TransferCharacteristics MatrixCoefficients VideoFullRangeFlag", ""
+    ),
+    "ColorantOrder": Kind("", "n"),
     "PrivateType": Kind("type! reserved", "TagSignature UnknownData"),
     "UnknownData": Kind(),
     # header

@@ -36,6 +36,7 @@ from brdfc.xml.names import (
     signature_text_of,
 )
 from brdfc.xml.naming import NO_NAMES, Names
+from brdfc.xml.older_types import OLDER_TYPES, OlderType, older_nodes
 from brdfc.xml.texts import (
     dictionary_nodes,
     localized_nodes,
@@ -206,6 +207,10 @@ def _private_signature(node: Node, expected: str) -> str:
     return signature_text_of(node.attributes["TagSignature"])
 
 
+def _older(row: OlderType) -> TagType:
+    return TagType(lambda tag, _e, _n: older_nodes(tag), lambda node, _f: row.read(node))
+
+
 _ROWS: dict[str, TagType] = {
     "mluc": TagType(lambda tag, _e, _n: localized_nodes(tag), lambda n, _f: read_localized(n)),
     "utf8": TagType(lambda tag, _e, _n: utf8_nodes(tag), lambda n, _f: read_utf8(n)),
@@ -216,5 +221,6 @@ _ROWS: dict[str, TagType] = {
     "svcn": TagType(lambda tag, _e, _n: conditions_nodes(tag), lambda n, _f: read_conditions(n)),
     "mpet": TagType(_pipeline, _read_pipeline),
     "tstr": TagType(_structure, _read_structure),
+    **{kind: _older(row) for kind, row in OLDER_TYPES.items()},
     **{kind: TagType(lambda t, _e, _n: [array_node(t)], read_array) for kind in NUMBER_FORMATS},
 }

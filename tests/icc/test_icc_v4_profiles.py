@@ -1,5 +1,6 @@
 """Whole profiles of versions 2 and 4: there and back, and what validate says of them."""
 
+import random
 from pathlib import Path
 
 import pytest
@@ -8,8 +9,9 @@ from icc_types import TYPES
 
 from brdfc.cmm import reference
 from brdfc.icc.profile import Profile
-from brdfc.icc.types import FixedArray, Opaque, XYZArray
+from brdfc.icc.types import FixedArray, Opaque, XYZArray, decode_tag
 from brdfc.icc.validate import validate
+from brdfc.source.errors import ProfileError
 
 
 @pytest.mark.parametrize("name", GOOD)
@@ -19,14 +21,13 @@ def test_a_good_profile(name):
     assert validate(read) == []
     assert read.tags == GOOD[name].tags
     assert Profile(read.header, read.tags).to_bytes() == data
+    assert not any(isinstance(tag, Opaque) for tag in read.tags.values())
     assert Profile(read.header, {tag: type_again(read, tag) for tag in read.tags}).tags == read.tags
 
 
 def type_again(profile, signature):
     """The tag made anew, as its fields say."""
-    tag = profile.tags[signature]
-    assert not isinstance(tag, Opaque)
-    return type(tag).decode(tag.encode(), signature)
+    return decode_tag(profile.tags[signature].encode(), signature)
 
 
 @pytest.mark.parametrize("name", BAD)
@@ -72,3 +73,24 @@ def test_the_reference_says_the_same(name: str, tmp_path: Path):
     JUDGED[name].save(path)
     verdict, report = reference.validate(path)
     assert (verdict not in ("OK", "warning")) == (name in BAD), report
+
+
+def test_random_mutations():
+    """Bytes put over others: a profile that stays as it is, or one ProfileError."""
+    chance = random.Random(4)
+    originals = [GOOD[name].to_bytes() for name in ("display 4", "printer 4", "named 2", "link 2")]
+    read = 0
+    for _ in range(400):
+        data = bytearray(chance.choice(originals))
+        place, width = chance.randrange(128, len(data) - 4), chance.choice((1, 2, 4))
+        data[place : place + width] = chance.choice((bytes(4), b"\xff" * 4, b"\0\1\2\3"))[:width]
+        try:
+            profile = Profile.from_bytes(bytes(data))
+        except ProfileError:
+            continue
+        read += 1
+        validate(profile)
+        assert profile.to_bytes() == data
+        for signature in profile.tags:
+            assert type_again(profile, signature) == profile.tags[signature]
+    assert 100 < read < 400

@@ -94,7 +94,7 @@ def test_nothing_to_say(profile):
         (mvis(mcta=None), "mcta", "required: mcta"),
         (mvis(M2B0=None), "M2B0", "required: M2B0 or M2B1"),
         (mvis(wtpt=None), "wtpt", "required: wtpt"),
-        (Profile(Header("mntr", b"RGB ", b"XYZ "), {}), "A2B0", "rXYZ with gXYZ"),
+        (Profile(Header("scnr", b"RGB ", b"XYZ "), {}), "A2B0", "rXYZ with gXYZ"),
         (mid(cprt=Utf8Text("me")), "cprt", "of type 'utf8', not mluc"),
         (mid(mdv=NumberArray("fl64", (0.0,) * 3)), "mdv ", "of type 'fl64'"),
         (mid(A2M0=Pipeline(2, 3, (TWO_TO_THREE,))), "A2M0", "2 channels in, the header says 3"),

@@ -30,24 +30,34 @@ from brdfc.icc.header import D50, Header, SpectralRange
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import multiplex_space, n_channel_space
 from brdfc.icc.types import (
+    CompressedText,
     Curve,
     Dictionary,
+    FixedArray,
     LocalizedText,
     NumberArray,
     Opaque,
+    ParametricCurve,
     Pipeline,
+    PlainText,
+    Record,
     Signature,
     SpectralViewingConditions,
     Structure,
     Tag,
+    TextDescription,
     Utf8Array,
     Utf8Text,
     XYZArray,
+    decode_tag,
 )
 from brdfc.source.errors import ProfileError
 from brdfc.xml.profile import encoded, from_xml, to_xml
 
 FLOATS = st.floats(width=32, allow_nan=False, allow_infinity=False)
+
+
+DATE = ("year", "month", "day", "hour", "minute", "second")
 
 
 def again(profile: Profile) -> Profile:
@@ -242,9 +252,44 @@ TAGS: dict[str, Tag] = {
         "a\x01cd", {"in  ": Structure("efgh", {"ab\xffd": Utf8Text("b")})}
     ),
     "carried": Opaque(b"ncpi" + bytes(4) + struct.pack(">IH", 1, 0x0233)),
-    "as bytes": Curve(gamma=2.25),
+    "curve": Curve(gamma=2.25),
+    "curve, identity": Curve(),
+    "curve, samples": Curve(samples=Samples.of([i / 40 for i in range(40)], Storage.UINT16)),
+    "parametric curve": ParametricCurve(3, (2.4000091552734375, 1 / 65536, -0.5, 0.25, 32767.0)),
+    "fixed": FixedArray("sf32", (1.0, -1 / 65536, 0.5) * 5),
+    "fixed, positive": FixedArray("uf32", (65535.0, 1 / 65536)),
+    "plain text": PlainText("  a <b> & é "),
+    "plain text that XML cannot hold": PlainText("a\x01b"),
+    "description": TextDescription("a", "ä 𝛾", 7, b"a\0\xff", 0x1F),
+    "description, ASCII only": TextDescription("a"),
+    "compressed": CompressedText("zut8", bytes(range(40))),
+    "compressed XML": CompressedText("ZXML", b""),
+    "date": Record("dtim", dict(zip(DATE, (24, 2, 9, 0, 59, 60000), strict=True))),
+    "video": Record("cicp", {"primaries": 9, "transfer": 16, "matrix": 0, "full_range": 255}),
+    "order": Record("clro", {}, ((2,), (0,), (1,))),
+    "data": Record("data", {"flag": 1}, payload=b"\0\1"),
+    "data, neither kind": Record("data", {"flag": 2}, payload=b"\0\1"),
+    "table": Opaque(b"rcs2" + bytes(9)),
     "identity": Pipeline(3, 3, ()),
 }
+
+
+def test_bytes_beyond_the_fields_stay() -> None:
+    """A tag of version 2 with filling that no field stands for goes as bytes."""
+    data = TextDescription("Ward").encode()[:-67] + b"\xaa" * 67
+    same(holding(decode_tag(data, "tag"), decode_tag(TextDescription("Ward").encode(), "tag")))
+    text = to_xml(holding(decode_tag(data, "tag")))
+    assert "<PrivateType" in text
+    assert "<textDescriptionType>" in to_xml(holding(TextDescription("Ward")))
+
+
+def test_curves_as_the_reference_writes_them() -> None:
+    text = to_xml(holding(Curve(gamma=2.25), ParametricCurve(0, (2.5,))))
+    assert "<curveType>\n        <Curve>\n          576\n" in text
+    assert '<ParametricCurve FunctionType="0">\n          2.5\n' in text
+    ramp = to_xml(holding(Curve(gamma=2.25))).replace("<Curve>", '<Curve IdentitySize="3">')
+    (tag,) = from_xml(ramp.encode(), "x.xml").tags.values()
+    assert tag == Curve(samples=Samples.of((0, 0.5, 1), Storage.UINT16))
 
 
 @pytest.mark.parametrize("name", TAGS)
