@@ -39,6 +39,9 @@ from brdfc.symbolic.intervals import Interval
 
 MOST_FOLLOWED = 1 << 18
 """Values, popped and pushed: those of the longest program that is not made of wide vectors."""
+AGAIN = 8
+"""What a value counts of a program that is followed again: a few hundred bytes may call each other
+any number of times."""
 OUTPUTS = 1 << 16
 """Output channels are kept as temporaries, behind those that a program can have."""
 
@@ -52,6 +55,7 @@ class Follower:
         self._declared = variables
         self._variables: dict[str, list[Value]] = {}
         self._exhausted: set[int] = set()
+        self._followed: set[int] = set()
         self._ranges: dict[int, list[Interval]] = {}
 
     def follow(self, program: Program, inputs: Sequence[Interval] | None) -> list[Interval]:
@@ -62,7 +66,12 @@ class Follower:
             self._exhausted.add(id(program))
         given = inputs if inputs is not None else [UNKNOWN] * program.inputs
         run = _Run(self, program, [Value(interval) for interval in given])
+        before = self.effort.each
+        if id(program) in self._followed:
+            self.effort.each = AGAIN
+        self._followed.add(id(program))
         run.block(program.body)
+        self.effort.each = before
         return [value.bounds for value in run.state.get(OUTPUTS, program.outputs)]
 
     def variable(self, signature: str) -> list[Value]:

@@ -30,12 +30,13 @@ NOTHING_KNOWN = Value(UNKNOWN)
 
 @dataclass
 class Effort:
-    """How many values may still be looked at; then nothing more is known."""
+    """How many values may still be looked at; then nothing more is known. each: what one counts."""
 
     left: int
+    each: int = 1
 
     def spend(self, values: int) -> None:
-        self.left -= values
+        self.left -= values * self.each
 
 
 @dataclass(slots=True)
