@@ -84,7 +84,7 @@ def connect(
     )
 
 
-_ORDER = "give the MID, then the MVIS"
+_ORDER = "give the MID first, then the MVIS"
 
 
 def connect_alone(profile: Profile, env: Mapping[str, float] | None = None) -> Link:

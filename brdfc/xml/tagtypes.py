@@ -62,7 +62,7 @@ class TagType(NamedTuple):
 def tag_node(tag: Tag, elements: ElementWriter, names: Names = NO_NAMES) -> Node:
     """The node of a tag's type. names: of the channels of a transform's first element."""
     row = _ROWS.get(tag.type_signature)
-    typed = row is not None and not isinstance(tag, (Opaque, TagArray))
+    typed = not isinstance(tag, (Opaque, TagArray)) and _can_be_made(tag)
     children = row.write(tag, elements, names) if row and typed else None
     if children is not None:
         return Node(TYPE_NAMES[tag.type_signature], {}, children)
@@ -70,6 +70,15 @@ def tag_node(tag: Tag, elements: ElementWriter, names: Names = NO_NAMES) -> Node
     attributes = {"type": signature_name(data[:4])}
     unknown = Node("UnknownData", lines=hexadecimal_lines(data[4:]))
     return Node("PrivateType", attributes, [unknown])
+
+
+def _can_be_made(tag: Tag) -> bool:
+    """Whether the tag's fields are such as brdfc writes. A file may hold others: longer texts."""
+    try:
+        tag.encode()
+    except (ProfileError, ProgramError):
+        return False
+    return True
 
 
 def read_tag(node: Node, folder: Folder) -> Tag:

@@ -55,7 +55,7 @@ def test_a_document_written_by_hand(tmp_path: Path) -> None:
 def test_mistakes_in_a_document(tmp_path: Path) -> None:
     text = (EXAMPLES / "display.xml").read_text()
     for old, new, message in (
-        ("#gain mul", "#gian mul", "x.xml:46:17: error: no macro is called 'gian'"),
+        ("#gain mul", "#gian mul", "x.xml:47:17: error: no macro is called 'gian'"),
         ("<GridPoints>2 2 2<", "<GridPoints>2 2 3<", "24 numbers, where 36 are needed"),
         ("out{Z}", "out{Y}", "x.xml, tag 'A2B1', element 0: output 2 is not written on every path"),
         ("clut{crosstalk}", "clut(0)", "element 0, op 41: 'clut' needs a 'clut' element"),

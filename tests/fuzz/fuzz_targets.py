@@ -14,7 +14,7 @@ from pathlib import Path
 from zlib import crc32
 
 import numpy as np
-from calc_programs import ELEMENTS, INPUTS, OUTPUTS
+from calc_programs import INPUTS, OUTPUTS, SHARED
 from fuzz_corpus import EXAMPLES
 
 from brdfc.calc.binary import decode_element, encode_element
@@ -70,7 +70,7 @@ def text(data: bytes) -> bool:
     """A calculator text: assembled, encoded, proven, run, and written as text."""
     try:
         block = assemble(data.decode("latin-1"))
-        element = Program(INPUTS, OUTPUTS, block, ELEMENTS)
+        element = Program(INPUTS, OUTPUTS, block, SHARED)
         coded = encode_element(element)
     except BrdfcError as error:
         shown(error)

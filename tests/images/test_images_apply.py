@@ -95,7 +95,8 @@ def test_the_output_is_the_same_every_time_and_says_what_it_is(
         page = written.pages[0]
         assert page.shape == (23, 17, 3)
         assert page.dtype == np.float32
-        *lines, profile, transform, run = page.description.split("\n")
+        *lines, first, profile, transform, run = page.description.split("\n")
+    assert first.startswith("profile: Isotropic Ward reflectance (coefficients), ID ")
     assert lines == [
         "XYZ, Y = 1 for white",
         "white: 0.9642 1 0.8249",

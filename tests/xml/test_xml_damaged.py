@@ -9,11 +9,13 @@ import pytest
 from brdfc.calc.function import decode_block
 from brdfc.calc.program import MAX_TEMPORARIES, Element, Op, OpaqueElement, Program
 from brdfc.calc.text import assemble
+from brdfc.icc import texts
 from brdfc.icc.header import Header, SpectralRange
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import multiplex_space
-from brdfc.icc.texts import Utf8Array
-from brdfc.icc.types import Pipeline
+from brdfc.icc.texts import Dictionary, Utf8Array
+from brdfc.icc.types import Pipeline, decode_tag
+from brdfc.source.errors import ProfileError
 from brdfc.xml.profile import from_xml, to_xml
 
 LAST = MAX_TEMPORARIES - 1
@@ -58,6 +60,18 @@ def test_reserved_words_that_are_not_0() -> None:
     for reserved in (1, 2**32 - 1):
         head = struct.pack(">4sIHH", b"emtx", reserved, 1, 3)
         same(OpaqueElement("emtx", 1, 3, head + bytes(32)))
+
+
+def test_a_text_that_is_longer_than_brdfc_writes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file may hold it; it goes as bytes."""
+    with monkeypatch.context() as patched:
+        patched.setattr(texts, "DICTIONARY_TEXT_LIMIT", 1000)
+        data = Dictionary((("long", "&" * 100),)).encode()
+    found = decode_tag(data, "meta")
+    with pytest.raises(ProfileError, match="is over 200"):
+        found.encode()
+    profile = Profile(Header("mvis"), {"meta": found})
+    assert again(profile).tags == profile.tags
 
 
 def test_a_spectral_range_of_minus_zeros() -> None:
