@@ -110,10 +110,8 @@ class PreciseEvaluation:
 
 def _undefined(operator: str, row: _Components) -> _Number:
     """What an operator makes of arguments some of which are undefined."""
-    if operator not in _DECIDED:
-        return None
-    decided = _whole(_DECIDED[operator])
-    return decided if decided in row else None
+    decided = _DECIDED.get(operator)
+    return _whole(decided) if decided is not None and _whole(decided) in row else None
 
 
 def _whole(x: int) -> _Number:
@@ -159,11 +157,9 @@ def _functions() -> _Functions:
     from mpmath import libmp as m
 
     bits = _bits()
-    zero, one, two = m.fzero, m.fone, m.from_int(2)
-    half, ten = m.mpf_div(one, two, bits), m.from_int(10)
+    zero, half, one, ten = m.fzero, m.from_float(0.5), m.fone, m.from_int(10)
     largest = m.from_man_exp(1, _LARGEST_EXPONENT)
     least_argument, largest_argument = m.from_int(_LEAST_ARGUMENT), m.from_int(_LARGEST_ARGUMENT)
-    longest_product = m.from_int(_LONGEST_PRODUCT)
 
     def of_one(function: Callable[..., _Number]) -> Callable[[_Number], _Number]:
         return lambda x: function(x, bits, "n")
@@ -193,22 +189,15 @@ def _functions() -> _Functions:
         whole = exponent >= 0
         if x == zero:
             return None if negative else one if y == zero else zero
-        if whole and m.mpf_le(m.mpf_abs(y), longest_product):
+        if whole and m.mpf_le(m.mpf_abs(y), m.from_int(_LONGEST_PRODUCT)):
             return tamed(m.mpf_pow_int(x, m.to_int(y), bits, "n"))
         if x[0] and not whole:
             return None
         size = exp(multiply(y, m.mpf_log(m.mpf_abs(x), bits, "n")))
-        odd = exponent == 0  # the last digit of the mantissa is a one
-        return m.mpf_neg(size) if x[0] and odd else size
+        return m.mpf_neg(size) if x[0] and exponent == 0 else size  # of an odd one
 
     def truth(condition: Callable[..., bool]) -> Callable[..., _Number]:
         return lambda *x: one if condition(*x) else zero
-
-    def sign(x: _Number) -> _Number:
-        return m.from_int(m.mpf_sign(x))
-
-    def with_sign_of(x: _Number, size: _Number) -> _Number:
-        return m.mpf_neg(size) if x[0] else size
 
     def log10(x: _Number) -> _Number:
         if m.mpf_sign(x) <= 0:
@@ -220,7 +209,7 @@ def _functions() -> _Functions:
         return lambda x: function(x, bits, "n") if m.mpf_le(m.mpf_abs(x), one) else None
 
     def size_first(function: Callable[..., _Number]) -> Callable[[_Number], _Number]:
-        return lambda x: with_sign_of(x, function(m.mpf_abs(x)))
+        return lambda x: m.mpf_neg(function(m.mpf_neg(x))) if x[0] else function(x)
 
     return {
         "add": of_two(m.mpf_add),
@@ -242,7 +231,7 @@ def _functions() -> _Functions:
         "atan": of_one(m.mpf_atan),
         "atan2": of_two(m.mpf_atan2),
         "abs": m.mpf_abs,
-        "sign": sign,
+        "sign": lambda x: m.from_int(m.mpf_sign(x)),
         "floor": of_one(m.mpf_floor),
         "ceil": of_one(m.mpf_ceil),
         "trunc": size_first(of_one(m.mpf_floor)),
