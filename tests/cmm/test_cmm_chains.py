@@ -164,6 +164,15 @@ def test_a_tone_curve_and_its_inverse(curve: Curve | ParametricCurve) -> None:
     assert ((beyond >= 0) & (beyond <= 1)).all()
 
 
+def test_a_value_that_a_tone_curve_jumps_over_leads_to_the_jump() -> None:
+    from brdfc.cmm.tones import inverse_tone
+    from brdfc.engine.curves import apply_curve
+
+    jumps = ParametricCurve(3, (2.2, 0.8, 0.2, 0.1, 0.5))  # from 0.05 to 0.325
+    back = apply_curve(inverse_tone(jumps), np.float32([0.02, 0.06, 0.2, 0.32, 0.6**2.2, 1.0]))
+    np.testing.assert_allclose(back, [0.2, 0.5, 0.5, 0.5, 0.5, 1.0], rtol=1e-6)
+
+
 def test_absolute_colours_are_relative_ones_times_the_medium() -> None:
     made = printer()
     relative = connect(made, intent="relative").apply(CMYK)
