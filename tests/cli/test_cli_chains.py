@@ -15,6 +15,7 @@ import brdfc
 from brdfc.icc.curves import Curve
 from brdfc.icc.header import Header
 from brdfc.icc.profile import Profile
+from brdfc.icc.types import Pipeline
 
 PROFILES = ("l_mid.icc", "l_mvis.icc")
 
@@ -69,6 +70,16 @@ def test_gray_is_one_image_in_strips_and_in_tiles(folder: Path) -> None:
         found.append(tifffile.imread(folder / "g.tif"))
         assert found[-1].shape == (6, 7)
         np.testing.assert_array_equal(found[-1], found[0])
+
+
+def test_a_device_link_is_not_embedded(folder: Path) -> None:
+    header = Header("link", colour_space=b"RGB ", pcs=b"RGB ", version=0x05000000)
+    Profile(header, {"A2B0": Pipeline(3, 3, ())}).save(folder / "link.icc")
+    done = run("apply", "link.icc", "c.tif", "-o", "e.tif", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    with tifffile.TiffFile(folder / "e.tif") as written:
+        assert written.pages[0].iccprofile is None
+    np.testing.assert_array_equal(*(tifffile.imread(folder / name) for name in ("e.tif", "c.tif")))
 
 
 def test_the_last_profile_is_not_written_over(folder: Path) -> None:
