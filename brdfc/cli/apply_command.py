@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from brdfc.cli.colour_options import rendered, rendering_options
+from brdfc.cli.colour_options import names_a_file, rendered, rendering_options
 from brdfc.cli.image_options import choices, image_options
 from brdfc.cli.options import (
     engine_option,
@@ -96,7 +96,7 @@ def command(
     *profiles, image = files
     if not profiles:
         raise click.UsageError("give the profiles first, then the image")
-    refuse_same([output], files)
+    refuse_same([output], [*files, how["to"] if names_a_file(how["to"] or "") else None])
     stop_when_told()
     pages = swept(environment)
     if resume and len(pages) == 1:

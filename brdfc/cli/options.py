@@ -179,9 +179,9 @@ def warn_of_display(chosen: Rendering) -> None:
     from brdfc.cmm.rendering import Target
     from brdfc.icc.types import Dictionary
 
-    meta = chosen.link.profile.tags.get("meta")
-    for_display = isinstance(meta, Dictionary) and meta.get("scene.output") == "sRGB"
-    if for_display and chosen.to is not Target.SRGB:
+    metas = [stage.profile.tags.get("meta") for stage in chosen.link.stages]
+    outputs = [meta.get("scene.output") for meta in metas if isinstance(meta, Dictionary)]
+    if "sRGB" in outputs and chosen.to is not Target.SRGB:
         click.echo(
             "note: the profile was compiled for sRGB; what that clips is not computed, so other "
             "colours than --to sRGB gives mean nothing there",

@@ -16,7 +16,7 @@ from pathlib import Path
 from brdfc.cmm.connection import (
     channel_names,
     channels_between,
-    colours_between,
+    colours_joined,
     component_names,
 )
 from brdfc.cmm.environment import environment_of
@@ -126,18 +126,29 @@ def _joined(stages: tuple[Stage, ...], env: Mapping[str, float], extrapolate: bo
     """The link of stages that fit each other."""
     chain: Chain = stages[0].elements
     missing: tuple[str, ...] = ()
-    for before, after in pairwise(stages):
+    for place, (before, after) in enumerate(pairwise(stages), 2):
         if before.gives.kind is Kind.MULTIPLEX:
             route, missing = channels_between(before.profile, after.profile)
             _check_names(before, after)
-            chain += (route,)
+            chain += (route, *after.elements)
         elif before.gives.kind is Kind.COLOURS:
-            chain += colours_between(before.profile, after.profile)
-        chain += after.elements
+            chain = colours_joined(chain, before.profile, after.profile, after.elements)
+        else:
+            _check_counts(before, after, f"profile {place} of {len(stages)}")
+            chain += after.elements
     channels, described = _samples(stages[0])
     environment = environment_of(stages, env, extrapolate)
     samples = scene_samples(stages[0].profile) if len(stages) > 1 else ()
     return Link(channels, chain, stages, missing, environment, described, samples)
+
+
+def _check_counts(before: Stage, after: Stage, where: str) -> None:
+    """That device values fit, of spaces too that say no count."""
+    given = runs.outputs_of(before.elements, before.inputs)
+    if given != after.inputs:
+        raise LinkError(
+            f"{given} values do not go into a profile that takes {after.inputs}", where=where
+        )
 
 
 def _check_names(before: Stage, after: Stage) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from brdfc.calc.program import Element, Matrix, Op, Program
 from brdfc.colour.difference import D50
-from brdfc.engine.trace import Route
+from brdfc.engine.trace import Chain, Route
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import space_text
 from brdfc.icc.types import NumberArray, Pipeline, Utf8Array
@@ -42,6 +42,41 @@ def scaling(factors: Triple, offsets: Triple = (0.0, 0.0, 0.0)) -> Matrix:
     """Each of X, Y, Z by its factor, then its offset."""
     x, y, z = factors
     return Matrix(3, 3, (x, 0.0, 0.0, 0.0, y, 0.0, 0.0, 0.0, z), offsets)
+
+
+def inverse_scaling(factors: Triple, offsets: Triple) -> Matrix:
+    """The inverse of scaling."""
+    x, y, z = (1 / f for f in factors)
+    a, b, c = (-o / f for o, f in zip(offsets, factors, strict=True))
+    return scaling((x, y, z), (a, b, c))
+
+
+def colours_joined(
+    chain: Chain, source: Profile, destination: Profile, onward: tuple[Element, ...]
+) -> Chain:
+    """A chain that leads to the source's X, Y, Z, and on by elements that take the destination's.
+
+    What only leads to X, Y, Z and back is left out: CIELAB would be clipped where they are 0.
+    """
+    between, white = colours_between(source, destination), profile_white(source)
+    if between:
+        return chain + between + onward
+    while chain and onward and _undone(chain[-1], onward[0], white):
+        chain, onward = chain[:-1], onward[1:]
+    return chain + onward
+
+
+def _undone(first: Element | Route, second: Element, white: Triple) -> bool:
+    """Whether the second takes back what the first does."""
+    if first == from_lab(white):
+        return second == to_lab(white)
+    if not isinstance(first, Matrix) or (first.inputs, first.outputs) != (3, 3):
+        return False
+    (x, y, z), (a, b, c) = first.values[::4], first.offsets
+    factors, offsets = (x, y, z), (a, b, c)
+    if not (x and y and z and first == scaling(factors, offsets)):
+        return False
+    return second == inverse_scaling(factors, offsets)
 
 
 def colours_between(source: Profile, destination: Profile) -> tuple[Element, ...]:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from brdfc.calc.program import Matrix
-from brdfc.cmm.connection import Triple, scaling
+from brdfc.cmm.connection import Triple
 from brdfc.icc.profile import Profile
 from brdfc.icc.types import XYZArray
 from brdfc.profiles.conditions import profile_white
@@ -28,13 +27,6 @@ TRIED: dict[Intent, tuple[int, ...]] = {
     Intent.ABSOLUTE: (3, 1, 0),
 }
 """The tags that are tried for an intent, by their numbers."""
-
-
-def inverse_scaling(factors: Triple, offsets: Triple) -> Matrix:
-    """The inverse of connection.scaling."""
-    x, y, z = (1 / f for f in factors)
-    a, b, c = (-o / f for o, f in zip(offsets, factors, strict=True))
-    return scaling((x, y, z), (a, b, c))
 
 
 _BLACK: Triple = (0.00336, 0.0034731, 0.00287)

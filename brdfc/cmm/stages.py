@@ -11,9 +11,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from brdfc.calc.program import Element, OpaqueElement
-from brdfc.cmm.connection import Triple, from_lab, named_space, scaling, to_lab
+from brdfc.cmm.connection import Triple, from_lab, inverse_scaling, named_space, scaling, to_lab
 from brdfc.cmm.device import lut_elements, matrix_shaper
-from brdfc.cmm.intents import TRIED, Intent, adjustment, inverse_scaling
+from brdfc.cmm.intents import TRIED, Intent, adjustment
 from brdfc.cmm.roles import FROM_DEVICE, IDENTIFY, TO_DEVICE, Kind, Role, Space, role_of, spaces
 from brdfc.cmm.transforms import (
     Transform,
@@ -24,6 +24,7 @@ from brdfc.cmm.transforms import (
 )
 from brdfc.engine.elements import changes_nothing
 from brdfc.icc.profile import Profile
+from brdfc.icc.signatures import space_channels
 from brdfc.icc.types import Pipeline
 from brdfc.profiles.conditions import profile_white
 from brdfc.source.errors import LinkError
@@ -74,6 +75,8 @@ def stage_of(
     if found is None:
         return _shaped(profile, role, takes, gives, wanted)
     tag = _asked(profile, role, found)
+    _check_device(found, takes, tag.inputs)
+    _check_device(found, gives, tag.outputs)
     if leads_to_reflectances(profile, found):
         gives = Space(Kind.REFLECTANCES)
     if transform is not None and intent is None:
@@ -123,6 +126,13 @@ def _asked(profile: Profile, role: Role, signature: str) -> Transform:
         hint = spectral if signature.startswith(("M2S", "D2B")) else None
         raise LinkError(f"the profile has no '{signature}' transform", hint=hint)
     return tag
+
+
+def _check_device(signature: str, space: Space, count: int) -> None:
+    """That a transform has as many channels as the device of its profile."""
+    known = space_channels(space.device) if space.kind is Kind.DEVICE else None
+    if known and known != count:
+        raise LinkError(f"'{signature}' has {count} channels, and {space} are {known}")
 
 
 # --- what it does ---------------------------------------------------------------------------------

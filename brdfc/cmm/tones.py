@@ -22,6 +22,8 @@ Tone = SampledCurve | SegmentedCurve | KnottedCurve
 
 _POINTS = 4096
 """Where a curve that has no inverse in closed form is looked at."""
+_JUMP = 1 / 65535
+"""Formulas whose pieces are nearer than this are meant to meet; their numbers are rounded."""
 
 
 def _power(g: float, a: float = 1.0, b: float = 0.0, c: float = 0.0) -> FormulaSegment:
@@ -106,12 +108,18 @@ def _inverse_of_formula(curve: ParametricCurve) -> Tone | None:
     upper_inverse = _power(1 / g, scale, -e * scale, -b / a)
     middle, high = (a * split + b) ** g + e, (a + b) ** g + e
     low = offset if split > 0 else middle
+    breaks: tuple[float, ...] = ()
+    segments: tuple[FormulaSegment, ...] = (upper_inverse,)
     if split > 0 and slope > 0:
-        breaks = (slope * split + offset,) if split < 1 else ()
-        lower_inverse = _line(1 / slope, -offset / slope)
-        segments = (lower_inverse, upper_inverse) if split < 1 else (lower_inverse,)
+        last, lower_inverse = slope * split + offset, _line(1 / slope, -offset / slope)
+        if split == 1:
+            segments = (lower_inverse,)
+        elif middle - last > _JUMP:
+            breaks, segments = (last, middle), (lower_inverse, _line(0.0, split), upper_inverse)
+        else:
+            breaks, segments = (last,), (lower_inverse, upper_inverse)
     else:
-        low, breaks, segments = middle, (), (upper_inverse,)
+        low = middle
     if split == 1:
         high = slope + offset
     ends = (low, *breaks, high)

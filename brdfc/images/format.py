@@ -85,7 +85,8 @@ class Format:
     def options(self, description: str) -> dict[str, Any]:
         """What tifffile's writer is told of a page."""
         return {
-            "shape": (self.height, self.width, self.samples),
+            # With a third axis of 1 tifffile takes the rows for pages.
+            "shape": (self.height, self.width, self.samples)[: 3 if self.samples > 1 else 2],
             "dtype": self.kind,
             "planarconfig": "contig" if self.samples > 1 else None,
             "contiguous": False,

@@ -137,6 +137,8 @@ def prepared(
 
 _PHOTOMETRIC = {b"RGB ": "rgb", b"CMYK": "separated"}
 """Device spaces that TIFF has a name for."""
+_OF_NO_DEVICE = ("link", "mlnk")
+"""Classes that do not say what device values look like, and are not embedded (ICC.1, 8.6)."""
 
 
 def _named_colours(rendering: Rendering) -> tuple[str, bytes | None]:
@@ -145,8 +147,10 @@ def _named_colours(rendering: Rendering) -> tuple[str, bytes | None]:
         return "rgb", srgb_profile()
     if rendering.to is Target.DEVICE:
         link = rendering.link
-        profile = link.profile.source or link.profile.to_bytes()
-        return _PHOTOMETRIC.get(link.gives.device, "minisblack"), profile
+        last = link.profile
+        says = last.header.device_class not in _OF_NO_DEVICE
+        embedded = (last.source or last.to_bytes()) if says else None
+        return _PHOTOMETRIC.get(link.gives.device, "minisblack"), embedded
     return "minisblack", None
 
 

@@ -12,6 +12,10 @@ from cli_process import run
 from PIL import ImageCms
 
 import brdfc
+from brdfc.icc.curves import Curve
+from brdfc.icc.header import Header
+from brdfc.icc.profile import Profile
+from brdfc.icc.types import Pipeline
 
 PROFILES = ("l_mid.icc", "l_mvis.icc")
 
@@ -53,6 +57,37 @@ def test_device_values_have_all_their_digits(folder: Path) -> None:
     own = run("eval", *PROFILES, *pixel, cwd=folder)
     both = ([float(w) for w in text.split()] for text in (shown.stdout, own.stdout))
     np.testing.assert_allclose(*both, rtol=1e-5)
+
+
+def test_gray_is_one_image_in_strips_and_in_tiles(folder: Path) -> None:
+    header = Header("mntr", colour_space=b"GRAY", pcs=b"XYZ ", version=0x04200000)
+    Profile(header, {"kTRC": Curve(gamma=2.0)}).save(folder / "gray.icc")
+    options = ["--to", "gray.icc", "--samples", "uint8"]
+    found = []
+    for layout in ([], ["--tile", "16"], ["--compression", "deflate"]):
+        done = run("apply", *PROFILES, "c.tif", "-o", "g.tif", *options, *layout, cwd=folder)
+        assert done.returncode == 0, done.stderr
+        found.append(tifffile.imread(folder / "g.tif"))
+        assert found[-1].shape == (6, 7)
+        np.testing.assert_array_equal(found[-1], found[0])
+
+
+def test_a_device_link_is_not_embedded(folder: Path) -> None:
+    header = Header("link", colour_space=b"RGB ", pcs=b"RGB ", version=0x05000000)
+    Profile(header, {"A2B0": Pipeline(3, 3, ())}).save(folder / "link.icc")
+    done = run("apply", "link.icc", "c.tif", "-o", "e.tif", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    with tifffile.TiffFile(folder / "e.tif") as written:
+        assert written.pages[0].iccprofile is None
+    np.testing.assert_array_equal(*(tifffile.imread(folder / name) for name in ("e.tif", "c.tif")))
+
+
+def test_the_last_profile_is_not_written_over(folder: Path) -> None:
+    before = (folder / "display.icc").read_bytes()
+    paths = ["-o", "./display.icc", "--to", "display.icc"]
+    done = run("apply", *PROFILES, "c.tif", *paths, cwd=folder)
+    assert (done.returncode, "would replace an input" in done.stderr) == (1, True)
+    assert (folder / "display.icc").read_bytes() == before
 
 
 def test_intents_differ(folder: Path) -> None:

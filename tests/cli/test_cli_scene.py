@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import tifffile
 from cli_process import run
+from PIL import ImageCms
 
 from brdfc.colour.difference import ciede2000
 
@@ -119,6 +120,10 @@ def test_a_display_profile_is_not_taken_for_xyz(folder: Path) -> None:
     assert done.returncode == 0, done.stderr
     done = run("apply", "d_mid.icc", "d_mvis.icc", "c.tif", "-o", "x2.tif", cwd=folder)
     assert "compiled for sRGB" in done.stderr
+    shown = ["--to", "display.icc", "--pixel", "0.1,0.2,0.4"]
+    made = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
+    (folder / "display.icc").write_bytes(made)
+    assert "compiled for sRGB" in run("eval", "d_mid.icc", "d_mvis.icc", *shown, cwd=folder).stderr
     done = run(
         "apply", "d_mid.icc", "d_mvis.icc", "c.tif", "-o", "x3.tif", "--to", "sRGB", cwd=folder
     )

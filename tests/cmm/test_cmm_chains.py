@@ -30,7 +30,7 @@ from brdfc.colour.conditions import viewing_conditions
 from brdfc.colour.difference import D50
 from brdfc.icc.curves import Curve, ParametricCurve
 from brdfc.icc.profile import Profile
-from brdfc.icc.types import Utf8Array
+from brdfc.icc.types import Pipeline, Utf8Array
 from brdfc.source.errors import LinkError, ValueGivenError
 
 RNG = np.random.default_rng(5)
@@ -164,6 +164,24 @@ def test_a_tone_curve_and_its_inverse(curve: Curve | ParametricCurve) -> None:
     assert ((beyond >= 0) & (beyond <= 1)).all()
 
 
+def test_a_value_that_a_tone_curve_jumps_over_leads_to_the_jump() -> None:
+    from brdfc.cmm.tones import inverse_tone
+    from brdfc.engine.curves import apply_curve
+
+    jumps = ParametricCurve(3, (2.2, 0.8, 0.2, 0.1, 0.5))  # from 0.05 to 0.325
+    back = apply_curve(inverse_tone(jumps), np.float32([0.02, 0.06, 0.2, 0.32, 0.6**2.2, 1.0]))
+    np.testing.assert_allclose(back, [0.2, 0.5, 0.5, 0.5, 0.5, 1.0], rtol=1e-6)
+
+
+@pytest.mark.parametrize("intent", [Intent.RELATIVE, Intent.ABSOLUTE])
+def test_cielab_goes_on_as_it_is(intent: Intent) -> None:
+    """Colours too of which X, Y or Z would be negative: tables are full of them."""
+    as_it_is = {"A2B1": Pipeline(3, 3, ()), "B2A1": Pipeline(3, 3, ())}
+    made = profile("spac", b"3CLR", b"Lab ", 5, **as_it_is)
+    imaginary = np.float32([[5, 90, 90], [20, -120, 0], [60, 10, -10]])
+    np.testing.assert_array_equal(connect(made, made, intent=intent).apply(imaginary), imaginary)
+
+
 def test_absolute_colours_are_relative_ones_times_the_medium() -> None:
     made = printer()
     relative = connect(made, intent="relative").apply(CMYK)
@@ -196,7 +214,6 @@ def _linked(mcs_first: bool) -> Profile:
     from brdfc.calc.program import Matrix
     from brdfc.icc.header import Header
     from brdfc.icc.signatures import NO_SPACE, multiplex_space
-    from brdfc.icc.types import Pipeline
 
     spaces = {"pcs": b"RGB "} if mcs_first else {"colour_space": b"RGB ", "pcs": NO_SPACE}
     header = Header("mlnk", mcs=multiplex_space(2), **spaces)
@@ -247,6 +264,10 @@ def _with(made: Profile, **tags: object) -> Profile:
     return replace(made, tags={**made.tags, **tags})
 
 
+def _spaced(made: Profile, space: bytes) -> Profile:
+    return replace(made, header=replace(made.header, colour_space=space))
+
+
 NO_CHAIN = {
     "a display after a MID": (lambda w: (w.mid, display(SRGB)), "after a MID the next profile"),
     "a MID after colours": (lambda w: (w.mid, w.mvis, w.mid), "colours do not go into"),
@@ -268,6 +289,14 @@ NO_CHAIN = {
         "'Luv', not to X, Y, Z",
     ),
     "no white": (lambda w: (_without(printer(), "wtpt"),), "no white of its medium"),
+    "more channels than the device": (
+        lambda w: (_with(display(SRGB), A2B1=printer().tags["A2B1"]),),
+        "'A2B1' has 4 channels, and device values of RGB are 3",
+    ),
+    "a space of no known size": (
+        lambda w: [_spaced(p, b"none") for p in (printer(), printer(), pipelined())],
+        "profile 3 of 3: 4 values do not go into a profile that takes 3",
+    ),
     "colorants in a plane": (
         lambda w: (w.mid, w.mvis, _with(display(SRGB), bXYZ=display(SRGB).tags["rXYZ"])),
         "lie in a plane",
