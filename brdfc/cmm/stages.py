@@ -2,7 +2,7 @@
 
 A profile is used from its device to the connection space, or the other way round, by what comes
 before it. The tags are tried in the order of the ICC's engine (`CIccXform::Create`): the rendering
-intent asked for, then those that can stand for it.
+intent asked for, then those that can stand for it; `D2B` of each before its `A2B`.
 """
 
 from __future__ import annotations

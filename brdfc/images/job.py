@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from brdfc.cmm.rendering import Rendering, Target
+from brdfc.cmm.roles import Kind
+from brdfc.cmm.stages import Stage
 from brdfc.icc.profile import Profile
 from brdfc.images.computing import Computing, columns
 from brdfc.images.counts import Counts
@@ -97,7 +99,10 @@ def prepared(
             hint=WRITING if image.channels == 1 else None,
         )
     names = link.samples if image.channels == len(link.samples) else link.channels
-    scaled = scaling(choices.scale, names, image.kind, image.where)
+    stated = choices.scale
+    if not stated and image.kind.kind != "f" and _has_encoding(link.stages[0]):
+        stated = {"": (0.0, 1.0)}
+    scaled = scaling(stated, names, image.kind, image.where)
     if choices.compression not in ("none", "deflate"):
         encoder(choices.compression)  # a missing package is said before the work
     form = Format(
@@ -139,6 +144,13 @@ _PHOTOMETRIC = {b"RGB ": "rgb", b"CMYK": "separated"}
 """Device spaces that TIFF has a name for."""
 _OF_NO_DEVICE = ("link", "mlnk")
 """Classes that do not say what device values look like, and are not embedded (ICC.1, 8.6)."""
+
+
+def _has_encoding(first: Stage) -> bool:
+    """Whether integers can only mean 0 to 1: of red, green and blue, or inks. Coefficients, in a
+    space that says nothing but their number, may mean anything."""
+    device = first.takes.kind is Kind.DEVICE and first.takes.device[:2] != b"nc"
+    return device and first.gives.kind is not Kind.MULTIPLEX
 
 
 def _named_colours(rendering: Rendering) -> tuple[str, bytes | None]:

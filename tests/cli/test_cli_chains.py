@@ -118,3 +118,15 @@ def test_mistakes_are_told(arguments: list[str], message: str, folder: Path) -> 
     assert done.returncode in (1, 2)
     assert message in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_integers_of_device_values_mean_0_to_1(folder: Path) -> None:
+    """Of a picture; coefficients need a scale."""
+    picture = np.random.default_rng(4).integers(0, 256, (4, 5, 3), np.uint8)
+    tifffile.imwrite(folder / "picture.tif", picture, photometric="rgb")
+    same = ["display.icc", "display.icc", "picture.tif", "-o", "same.tif", "--samples", "uint8"]
+    done = run("apply", *same, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    np.testing.assert_array_equal(tifffile.imread(folder / "same.tif"), picture)
+    refused = run("apply", *PROFILES, "picture.tif", "-o", "no.tif", cwd=folder)
+    assert "nothing says what they mean" in refused.stderr
