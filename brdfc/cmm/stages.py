@@ -26,6 +26,7 @@ from brdfc.engine.elements import changes_nothing
 from brdfc.icc.profile import Profile
 from brdfc.icc.signatures import space_channels
 from brdfc.icc.types import Pipeline
+from brdfc.profiles.brdf_function import ANGLES
 from brdfc.profiles.conditions import profile_white
 from brdfc.source.errors import LinkError
 
@@ -129,9 +130,10 @@ def _asked(profile: Profile, role: Role, signature: str) -> Transform:
 
 
 def _check_device(signature: str, space: Space, count: int) -> None:
-    """That a transform has as many channels as the device of its profile."""
+    """That a transform has as many channels as the device of its profile; one of a BRDF function has
+    its angles before them."""
     known = space_channels(space.device) if space.kind is Kind.DEVICE else None
-    if known and known != count:
+    if known and known + len(ANGLES) * signature.startswith("b") != count:
         raise LinkError(f"'{signature}' has {count} channels, and {space} are {known}")
 
 

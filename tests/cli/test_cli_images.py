@@ -169,7 +169,12 @@ def test_an_interruption_leaves_nothing(number: int, large: Path, folder: Path) 
     arguments = ["apply", *PROFILES, "large.tif", "-o", "cut.tif", "--to", "sRGB"]
     arguments += ["--engine", "interpreter"]  # which is not done before it is interrupted
     child = subprocess.Popen(
-        [sys.executable, "-c", code, *arguments], cwd=folder, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", code, *arguments],
+        cwd=folder,
+        stderr=subprocess.PIPE,
+        text=True,
+        # What runs in the background of a shell passes it over, and so would its children.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     while not any(folder.glob(".cut.tif.*")):
         assert child.poll() is None
