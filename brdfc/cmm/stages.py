@@ -130,8 +130,8 @@ def _asked(profile: Profile, role: Role, signature: str) -> Transform:
 
 
 def _check_device(signature: str, space: Space, count: int) -> None:
-    """That a transform has as many channels as the device of its profile; one of a BRDF function has
-    its angles before them."""
+    """That a transform has as many channels as the device of its profile; a BRDF function's has its
+    angles before them."""
     known = space_channels(space.device) if space.kind is Kind.DEVICE else None
     if known and known + len(ANGLES) * signature.startswith("b") != count:
         raise LinkError(f"'{signature}' has {count} channels, and {space} are {known}")
