@@ -114,8 +114,7 @@ def _channels(profile: Profile) -> tuple[Channel, ...]:
         return ()
     values: list[float | None] = [None] * len(names.names)
     if isinstance(defaults, NumberArray) and len(defaults.values) == len(values):
-        one = {"ui08": 255, "ui16": 65535}.get(defaults.kind, 1)
-        values = [value / one for value in defaults.values]
+        values = list(defaults.scaled)
     return tuple(map(Channel, names.names, values))
 
 

@@ -147,10 +147,6 @@ def channel_names(profile: Profile) -> tuple[str, ...]:
     return tag.names
 
 
-_WHOLE = {"ui08": 255, "ui16": 65535}
-"""What stands for 1 in defaults of whole numbers."""
-
-
 def defaults(profile: Profile, count: int) -> tuple[float, ...]:
     """The defaults of a profile's multiplex channels (`mdv `), zeros where it states none."""
     tag = profile.tags.get("mdv ")
@@ -158,8 +154,7 @@ def defaults(profile: Profile, count: int) -> tuple[float, ...]:
         return (0.0,) * count
     if len(tag.values) != count:
         raise LinkError(f"{len(tag.values)} defaults ('mdv ') for {count} channels")
-    one = _WHOLE.get(tag.kind, 1)
-    return tuple(value / one for value in tag.values)
+    return tag.scaled
 
 
 _COMPONENTS: dict[bytes, tuple[str, ...]] = {

@@ -24,6 +24,9 @@ NUMBER_FORMATS = {
 }
 
 
+_GREATEST = {"ui08": 255, "ui16": 65535}
+
+
 @dataclass(frozen=True)
 class NumberArray(Tag):
     """`fl32` and its kin: kind is the type signature, the values as they are in the file.
@@ -37,6 +40,13 @@ class NumberArray(Tag):
     @property
     def type_signature(self) -> str:
         return self.kind
+
+    @property
+    def scaled(self) -> tuple[float, ...]:
+        """The values, those of 8 and 16 bits as parts of the greatest, as defaults of channels are
+        meant."""
+        one = _GREATEST.get(self.kind, 1)
+        return tuple(value / one for value in self.values)
 
     def encode(self) -> bytes:
         try:
