@@ -254,3 +254,12 @@ def test_beyond_what_is_followed_nothing_is_taken_for_granted():
     (finding,) = portability(made)
     assert "'div': the divisor may be 0" in finding
     assert math.isinf(Follower({}).follow(made, None)[0].high)
+
+
+def test_calculators_that_call_each_other_are_not_followed_for_long(function_calls):
+    """Fifteen that each call the next one twice: 2^15 times the last, from a few hundred bytes."""
+    program = Program(1, 1, assemble("{ in sin cos sq out }"))
+    for _ in range(15):
+        program = Program(1, 1, assemble("{ in calc(0) calc(0) out }"), (program,))
+    verify(program)
+    assert function_calls(lambda: Follower({}).follow(program, None)) < 500_000
