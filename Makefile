@@ -27,6 +27,7 @@ figures: .venv/installed
 	$(BIN)/python benchmarks/engine.py
 	$(BIN)/python benchmarks/scaling.py -o docs/engine.svg
 	$(BIN)/python benchmarks/images.py
+	$(BIN)/python benchmarks/profiles.py
 	$(BIN)/python benchmarks/pixels.py
 	$(BIN)/python benchmarks/fitting.py intervals
 
